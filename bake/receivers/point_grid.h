@@ -67,6 +67,11 @@ class PointGrid {
                     static_cast<std::uint64_t>(c.z) + 1);
     }
     std::uint64_t name_of(std::size_t cell) const { return keys_[cell]; }
+    /// The cell of that key, 0 ... cells() - 1; cells() where it holds no point.
+    std::size_t cell_at(std::uint64_t key) const {
+        const auto found = place_.find(key);
+        return found != place_.end() ? found->second : cells();
+    }
 
   private:
     // Coordinates wrap around. `pack` expects them one too large, so that neighbours are +0, +1,

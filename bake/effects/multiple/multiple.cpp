@@ -11,14 +11,13 @@
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_rates.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/effects/multiple/receiver_rows.h"
 #include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/multiple/view_terms.h"
-#include "bake/effects/multiple/walks/limit_views.h"
 #include "bake/effects/multiple/walks/true_walks.h"
-#include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scene/even_media.h"
 #include "bake/truth/true_irradiance.h"
@@ -135,50 +134,9 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
     return samples;
 }
 
-// Adds factor * sums, four floats per texel (one with one band), to a row of `to`.
-void add_sums(std::span<const float> sums, float factor, std::uint32_t row, const DenseRow& to) {
-    const std::size_t step = to.bands == 1 ? 1 : 4;
-    for (std::uint32_t band = 0; band < to.bands; ++band) {
-        const std::span<float> plane = to.plane(row, band);
-        for (std::size_t k = 0; k < plane.size(); ++k) {
-            plane[k] += factor * sums[step * k + band];
-        }
-    }
-}
-
-// `rows` by view as harmonics of the view w'. `sums`: T_d / scale.
-void add_views(const ViewFit& fit, glm::vec3 normal, std::span<const float> sums,
-               std::span<const float> rows, float scale, const RowLayout& layout,
-               const DenseRow& row) {
-    const std::uint32_t count = layout.view_harmonics - 1;
-    const ViewLimit limit = limit_views(sums, rows, row.bands == 1 ? 1 : 4, normal, fit);
-    const ViewMatrix matrix = to_harmonics(fit, normal);
-    for (std::uint32_t k = 0; k < layout.view_harmonics; ++k) {
-        // The constant stands in the first row even where more harmonics follow it.
-        const std::uint32_t to = k == 0 ? 0 : layout.first_harmonic() + k;
-        for (std::uint32_t r = 0; r < count; ++r) {
-            const float factor =
-                scale * (r < kFirstDegree ? limit.first : limit.second) * matrix[k][r];
-            if (factor != 0) {
-                add_sums(rows.subspan(r * sums.size(), sums.size()), factor, to, row);
-            }
-        }
-    }
-}
-
-// T_0 += T_d / (pi c_exit h_0).
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
-    const MultipleStage& stage = static_cast<const Samples&>(*inputs.own.samples).stage;
-    const double scale = 1 / (std::numbers::pi * stage.medium.exit);
-    std::vector<float> sums((row.bands == 1 ? 1 : 4) * row.size());
-    const std::uint32_t by_view = std::max(1u, inputs.layout.view_harmonics) - 1;
-    std::vector<float> views(by_view * sums.size());
-    gather_multiple_rows(stage, receiver.inside, inputs.knobs[kEpsilon], row.bands, sums, views);
-    add_sums(sums, static_cast<float>(scale / inputs.layout.view_of_constant()), 0, row);
-    if (by_view > 0) {
-        add_views(stage.walks.view_fit, receiver.inside.normal, sums, views,
-                  static_cast<float>(scale), inputs.layout, row);
-    }
+    add_multiple_rows(static_cast<const Samples&>(*inputs.own.samples).stage, receiver.inside,
+                      inputs.knobs[kEpsilon], inputs.layout, row);
     return 0;
 }
 

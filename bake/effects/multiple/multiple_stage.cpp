@@ -141,16 +141,16 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
     if (!stage.tree.nodes.empty()) {
         stage.walked.resize(scales ? sites.size() : 0);
         stage.dipole.resize(scales ? sites.size() : 0);
-        subtract = [&](std::size_t s, std::span<float> rgbx) {
-            std::vector<float> dipole(rgbx.size() / 4 * step);
+        subtract = [&](std::size_t s, std::span<float> row) {
+            std::vector<float> dipole(row.size());
             gather_dipole_row(stage, sites[s].position, sites[s].normal, options.tolerance, scale,
                               options.bands, dipole);
             if (scales) {
-                stage.walked[s] = sum_of_faces(rgbx, 4);
+                stage.walked[s] = sum_of_faces(row, step);
                 stage.dipole[s] = sum_of_faces(dipole, step);
             }
             for (std::size_t k = 0; k < dipole.size(); ++k) {
-                rgbx[4 / step * k] -= dipole[k];
+                row[k] -= dipole[k];
             }
         };
     }
@@ -191,19 +191,20 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
                             scene_diagonal(scene, all_primitives(scene)), options.bands);
     const bool walks = options.model != MultipleModel::dipole;
     stage.model = options.model;
+    SitePlan plan;
+    if (walks) {
+        plan = plan_sites(area, scene_diagonal(scene, primitives), path, options.walks);
+        plan.is_residual = plan.is_residual && !options.layered;
+    }
+    const bool walks_alone = options.model == MultipleModel::walks && !plan.is_residual;
     SampleTransport transport =
         bake_sample_transport(rays, samples,
                               {options.cubemap_size, options.kept, stage.medium.eta,
                                options.share_rays, options.light, kKeptOfLight},
                               context);
     stage.rays = transport.rays;
-    SitePlan plan;
-    if (walks) {
-        plan = plan_sites(area, scene_diagonal(scene, primitives), path, options.walks);
-        plan.is_residual = plan.is_residual && !options.layered;
-    }
     SparseVectors light, other;
-    if (options.model == MultipleModel::walks && !plan.is_residual) {
+    if (walks_alone) {
         light = std::move(transport.rows);
         other = std::move(transport.other);
     } else if (!context.cancelled()) {

@@ -64,7 +64,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
 
 /// T_d, the row of multiple scattering at a point: four floats per texel (one with one band). And
 /// how it changes with the view, as walks found it: rows by view (walks/view_fit.h), none, 3 or 8,
-/// one after the other. Both overwritten.
+/// one after the other. Both overwritten. Precondition: walks did not begin inside.
 void gather_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
                           std::uint32_t bands, std::span<float> rgbx, std::span<float> views);
 

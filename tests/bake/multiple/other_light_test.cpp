@@ -92,8 +92,8 @@ TEST(OtherLightOfMedia, LeavesWalksAsTheEnvironmentDoes) {
         ExitCells::Sums sums{};
         ExitCells::Cells cells{};
         environment.add_exit(sample, exit, 1, sums);
-        environment.add(sample, sums, a, cells);
-        instead.add(sample, sums, b, cells);
+        environment.add(sample, sums, {a, 4}, cells);
+        instead.add(sample, sums, {b, 4}, cells);
         double sum = 0, same = 0;
         for (std::size_t k = 0; k < a.size(); k += kAllOfThem * 4 / 6) {
             sum += a[k];

@@ -56,8 +56,9 @@ double seen(const ExitCells& cells, const HaarVector& light, const ExitDirection
     ExitCells::Sums sums{};
     ExitCells::Cells own{};
     cells.add_exit(0, direction, {1, 0.5f, 0, 0}, sums);
-    cells.add(0, {light.index, light.value}, sums, row, own);
-    cells.add_cells(own, row);
+    const SparseVector vector{light.index, light.value};
+    cells.add(0, vector, cells.averages_of(vector), sums, {row, 4}, own);
+    cells.add_cells(own, {row, 4});
     double sum = 0;
     for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
         // A face's first coefficient is its average times its side.
@@ -141,8 +142,9 @@ TEST(ExitCells, WeighAVectorCellByCell) {
         ExitCells::Sums sums{};
         ExitCells::Cells own{};
         cells.add_exit(0, one({0.9f, 0.3f, 0}), glm::vec4(1), sums);
-        cells.add(0, {light.index, light.value}, sums, row, own);
-        cells.add_cells(own, row);
+        const SparseVector vector{light.index, light.value};
+        cells.add(0, vector, cells.averages_of(vector), sums, {row, 4}, own);
+        cells.add_cells(own, {row, 4});
         std::vector<float> shown(texel.size()), scratch(std::size_t{size} * size);
         for (std::size_t k = 0; k < shown.size(); ++k) {
             shown[k] = row[4 * k + 1];

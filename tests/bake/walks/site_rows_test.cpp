@@ -78,6 +78,27 @@ bake::BodyPoint body_point(const SurfaceSample& at) {
     return {at.position, at.normal, at.position - 1e-5f * at.geometric_normal, 0};
 }
 
+// T_0 of a receiver, one band, and its rows by view one after the other.
+void add_rows(const bake::WalkStage& stage, const bake::BodyPoint& point, std::span<float> row,
+              std::span<float> views) {
+    if (stage.inner.empty()) {
+        bake::add_walked_rows(stage, point, 1, row, views);
+        return;
+    }
+    const auto count = static_cast<std::uint32_t>(1 + views.size() / row.size());
+    const bake::SiteRowSum sum = bake::sum_inner_rows(stage, point, row.size(), count);
+    std::vector<float> all(count * row.size());
+    std::vector<bake::SiteRowSum::Share> shares(count);
+    for (std::uint32_t r = 0; r < count; ++r) {
+        shares[r].term = r;
+        shares[r].of_row[r] = 1;
+    }
+    sum.add_to(shares, {all, kCubemap, count, 1});
+    const auto end = all.begin() + static_cast<std::ptrdiff_t>(row.size());
+    std::copy(all.begin(), end, row.begin());
+    std::copy(end, all.end(), views.begin());
+}
+
 // A ball of albedo 1 in an even sky shows the sky's radiance, whatever row it is.
 TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
     const WalkedBall ball = make_ball(20, 1);
@@ -87,8 +108,7 @@ TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
         constexpr int kPoints = 50;
         for (int i = 0; i < kPoints; ++i) {
             std::vector<float> row(kAll);
-            bake::add_walked_rows(stage, body_point(ball.samples[static_cast<std::size_t>(i * 29)]),
-                                  1, row, {});
+            add_rows(stage, body_point(ball.samples[static_cast<std::size_t>(i * 29)]), row, {});
             sum += 4 * std::numbers::pi * white(row) / kPoints;
         }
         // An even cube is no even sky, and light-free rows err by the truncated entries: a few per
@@ -201,7 +221,7 @@ TEST(SiteRows, OfSitesInsideShowTheEdgeOfAThinBladeAsItsOwnWalksDo) {
         bake::ExitCells::Sums sums{};
         bake::ExitCells::Cells cells{};
         light.add_exit(j, exit, 1, sums);
-        light.add(j, sums, rgbx, cells);
+        light.add(j, sums, {rgbx, 4}, cells);
         for (std::size_t k = 0; k < row.size(); ++k) {
             row[k] = rgbx[4 * k];
         }
@@ -212,7 +232,7 @@ TEST(SiteRows, OfSitesInsideShowTheEdgeOfAThinBladeAsItsOwnWalksDo) {
         const glm::vec3 at = normal * glm::vec3(0.5f * kThickness, 3, 3);
         const bake::WalkStart start = start_below(at, normal);
         std::vector<float> row(kAll), views(3 * kAll);
-        bake::add_walked_rows(stage, {at, normal, start.position, 0}, 1, row, views);
+        add_rows(stage, {at, normal, start.position, 0}, row, views);
         constexpr std::uint32_t kWalks = 200000;
         const Leaving truth = walk_from(body.body->space, start, 1, kWalks);
         const double mean = 4 * std::numbers::pi * white(row) / unit;
@@ -267,7 +287,7 @@ TEST(SiteRows, OfAnAbsorbingBallsDarkEndSeeTheLightOverItsHorizon) {
         const glm::vec3 normal =
             glm::normalize(glm::vec3(0.1f * std::cos(angle), -1, 0.1f * std::sin(angle)));
         std::vector<float> row(kAll);
-        bake::add_walked_rows(stage, {4.99f * normal, normal, 4.98f * normal, 0}, 1, row, {});
+        add_rows(stage, {4.99f * normal, normal, 4.98f * normal, 0}, row, {});
         for (std::size_t k = 0; k < kAll; ++k) {
             shown += above[k] * static_cast<double>(row[k]);
         }
@@ -344,7 +364,7 @@ TEST(SitePlan, FewWalksAreCountedFartherAroundSoThatNoiseStaysTheSame) {
 }
 
 TEST(SiteRows, SumsOfSeveralRowsAreThoseOfEachRowByItself) {
-    constexpr std::size_t kTexels = 12;
+    constexpr std::size_t kTexels = 44;
     for (const std::uint32_t bands : {1u, 3u}) {
         bake::SiteRows rows;
         rows.bands = bands;
@@ -372,10 +392,26 @@ TEST(SiteRows, SumsOfSeveralRowsAreThoseOfEachRowByItself) {
                 }
                 sum.add(rows, site, weights);
             }
+            // The last row twice in the first term, each row in the term of its number.
+            std::vector<float> values(count * bands * kTexels);
+            const bake::DenseRow dense{values, 0, count, bands};
+            std::vector<bake::SiteRowSum::Share> shares(count + 1);
             for (std::uint32_t r = 0; r < count; ++r) {
-                std::vector<float> row(step * kTexels);
-                sum.add_to(r, row);
-                EXPECT_EQ(row, alone[r]) << bands << " bands, row " << r << " of " << count;
+                shares[r].term = r;
+                shares[r].of_row[r] = 1;
+            }
+            shares[count].of_row[count - 1] = 2;
+            sum.add_to(shares, dense);
+            for (std::uint32_t r = 0; r < count; ++r) {
+                for (std::uint32_t b = 0; b < bands; ++b) {
+                    for (std::size_t k = 0; k < kTexels; ++k) {
+                        const float last = alone[count - 1][step * k + b];
+                        EXPECT_EQ(sum.at(r, k, b), alone[r][step * k + b]);
+                        EXPECT_EQ(dense.plane(r, b)[k],
+                                  alone[r][step * k + b] + (r == 0 ? 2 * last : 0))
+                            << bands << " bands, row " << r << " of " << count;
+                    }
+                }
             }
         }
     }

@@ -69,12 +69,13 @@ double BandWeights::left() const {
 // What a flight is worth in each group, over what it is worth in the one it is drawn from, times
 // `scale`.
 BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides, float scale) const {
-    const float log_scale = std::log(scale);
+    const float log_scale = scale == 1 ? 0 : std::log(scale);
     PerGroup factors{1, 1, 1};
     for (std::size_t g = 0; g < groups_; ++g) {
-        const float exponent = (sigma_t_ - medium_->sigma_t[g]) * length + log_scale;
-        factors[g] =
-            std::exp(std::min(kMostExponent, collides ? exponent + log_ratio_[g] : exponent));
+        float exponent = (sigma_t_ - medium_->sigma_t[g]) * length + log_scale;
+        exponent = collides ? exponent + log_ratio_[g] : exponent;
+        // 0 in the group that the flight is drawn from.
+        factors[g] = exponent == 0 ? 1 : std::exp(std::min(kMostExponent, exponent));
     }
     return factors;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "bake/base/vector8.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -15,7 +16,7 @@ constexpr std::uint32_t kPerFace = ExitCells::kSide * ExitCells::kSide;
 constexpr std::uint32_t kParts = 8;        // of a cell's side
 constexpr std::uint32_t kNormalSide = 33;  // of a cube map of normals that share a table: 3 degrees
 constexpr std::uint32_t kCosines = 1024;
-constexpr std::uint8_t kCoarse = 255;
+constexpr std::uint8_t kCoarse = ExitCells::kCount;
 
 ExitCells::Functions functions_of(const ExitDirection& direction) {
     const glm::vec3 w = direction.mean;
@@ -146,7 +147,7 @@ ExitCells::Table ExitCells::make_table(glm::vec3 normal, std::span<const Part> p
         const Vector own =
             p[cell] > kLeast * all ? Vector(solver.solve(value[cell])) : Vector::Zero();
         for (std::size_t i = 0; i < kFunctions; ++i) {
-            table.reproduces[cell][i] = static_cast<float>(own[static_cast<Eigen::Index>(i)]);
+            table.reproduces[i][cell] = static_cast<float>(own[static_cast<Eigen::Index>(i)]);
         }
     }
     for (std::size_t i = 0; i < kFunctions; ++i) {
@@ -165,53 +166,99 @@ void ExitCells::add_exit(std::uint32_t sample, const ExitDirection& direction, g
     }
 }
 
-void ExitCells::add(std::uint32_t sample, const SparseVector& vector, const Sums& sums,
-                    std::span<float> rgbx, Cells& cells) const {
-    const Table& table = tables_[table_[sample]];
-    Cells weight;
-    for (std::uint32_t cell = 0; cell < kCount; ++cell) {
-        glm::vec4 sum = sums[0];
-        for (std::size_t i = 0; i < kFunctions; ++i) {
-            sum += table.reproduces[cell][i] * sums[1 + i];
-        }
-        weight[cell] = sum;
+namespace {
+
+using Float4 = float __attribute__((vector_size(16)));
+
+// weight[cell] = sums[0] + sum over functions of reproduces[function][cell] * sums[1 + function]
+OPALINE_VECTOR_CLONES
+void weigh_cells(const float* reproduces, const float* sums, float* weight) {
+    for (std::size_t cell = 0; cell < ExitCells::kCount; ++cell) {
+        weight[cell] = sums[0];
     }
-    std::array<float, kCount> average{};
+    for (std::size_t i = 0; i < ExitCells::kFunctions; ++i) {
+        for (std::size_t cell = 0; cell < ExitCells::kCount; ++cell) {
+            weight[cell] += reproduces[i * ExitCells::kCount + cell] * sums[1 + i];
+        }
+    }
+}
+
+// sum[cell] += weight[cell] * average[cell]
+OPALINE_VECTOR_CLONES
+void add_averages(const float* weight, const float* average, float* sum) {
+    for (std::size_t cell = 0; cell < ExitCells::kCount; ++cell) {
+        sum[cell] += weight[cell] * average[cell];
+    }
+}
+
+}  // namespace
+
+ExitCells::Averages ExitCells::averages_of(const SparseVector& vector) const {
+    Averages averages{};
     for (std::size_t i = 0; i < vector.index.size(); ++i) {
         const std::uint32_t k = vector.index[i];
-        const float value = vector.value[i];
         if (cell_[k] == kCoarse) {
             const std::uint32_t face = k / (size_ * size_);
-            average[(face * kSide + k / size_ % size_) * kSide + k % size_] = value;
-            continue;
-        }
-        const glm::vec4 light = value * weight[cell_[k]];
-        float* const to = &rgbx[4 * std::size_t{k}];
-        for (int b = 0; b < 4; ++b) {
-            to[b] += light[b];
+            averages[(face * kSide + k / size_ % size_) * kSide + k % size_] = vector.value[i];
         }
     }
     std::array<float, kPerFace> scratch;
     for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-        formats::haar_inverse(std::span(average).subspan(face * kPerFace, kPerFace), kSide,
+        formats::haar_inverse(std::span(averages).subspan(face * kPerFace, kPerFace), kSide,
                               scratch);
     }
-    for (std::uint32_t cell = 0; cell < kCount; ++cell) {
-        cells[cell] += average[cell] * weight[cell];
+    return averages;
+}
+
+void ExitCells::add(std::uint32_t sample, const SparseVector& vector, const Averages& averages,
+                    const Sums& sums, const TexelRow& row, Cells& cells) const {
+    const Table& table = tables_[table_[sample]];
+    const std::size_t bands = row.step == 1 ? 1 : 3;
+    std::array<std::array<float, kCount + 1>, 3> plane;  // the last, of averages: 0
+    for (std::size_t b = 0; b < bands; ++b) {
+        std::array<float, 1 + kFunctions> own;
+        for (std::size_t i = 0; i < own.size(); ++i) {
+            own[i] = sums[i][static_cast<glm::length_t>(b)];
+        }
+        weigh_cells(table.reproduces.front().data(), own.data(), plane[b].data());
+        plane[b][kCoarse] = 0;
+        add_averages(plane[b].data(), averages.data(), cells[b].data());
+    }
+    float* const to = row.values.data();
+    const std::size_t count = vector.index.size();
+    if (bands == 1) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const std::uint32_t k = vector.index[i];
+            to[k] += vector.value[i] * plane[0][cell_[k]];
+        }
+        return;
+    }
+    std::array<Float4, kCount + 1> weight;
+    for (std::size_t cell = 0; cell < weight.size(); ++cell) {
+        weight[cell] = Float4{plane[0][cell], plane[1][cell], plane[2][cell], 0};
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::uint32_t k = vector.index[i];
+        float* const place = to + 4 * std::size_t{k};
+        Float4 sum;
+        std::memcpy(&sum, place, sizeof sum);
+        sum += vector.value[i] * weight[cell_[k]];
+        std::memcpy(place, &sum, sizeof sum);
     }
 }
 
-void ExitCells::add_cells(const Cells& cells, std::span<float> rgbx) const {
+void ExitCells::add_cells(const Cells& cells, const TexelRow& row) const {
     std::array<float, kPerFace> own, scratch;
+    const std::size_t bands = row.step == 1 ? 1 : 3;
     for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-        for (int b = 0; b < 3; ++b) {
+        for (std::size_t b = 0; b < bands; ++b) {
             for (std::uint32_t c = 0; c < kPerFace; ++c) {
-                own[c] = cells[face * kPerFace + c][b];
+                own[c] = cells[b][face * kPerFace + c];
             }
             formats::haar_forward(std::span(own), kSide, scratch);
             for (std::uint32_t c = 0; c < kPerFace; ++c) {
                 const std::size_t k = (face * std::size_t{size_} + c / kSide) * size_ + c % kSide;
-                rgbx[4 * k + static_cast<std::size_t>(b)] += own[c];
+                row.values[row.step * k + b] += own[c];
             }
         }
     }

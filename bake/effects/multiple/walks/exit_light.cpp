@@ -11,11 +11,22 @@ namespace {
 
 using Float4 = float __attribute__((vector_size(16)));
 
-void add_to(float* to, Float4 value) {
-    Float4 sum;
-    std::memcpy(&sum, to, sizeof sum);
-    sum += value;
-    std::memcpy(to, &sum, sizeof sum);
+void add_weighted(const SparseVector& entries, const glm::vec4& weight, const TexelRow& row) {
+    float* const to = row.values.data();
+    if (row.step == 1) {
+        for (std::size_t i = 0; i < entries.index.size(); ++i) {
+            to[entries.index[i]] += weight.x * entries.value[i];
+        }
+        return;
+    }
+    const Float4 factor{weight.x, weight.y, weight.z, 0};
+    for (std::size_t i = 0; i < entries.index.size(); ++i) {
+        float* const place = to + 4 * std::size_t{entries.index[i]};
+        Float4 sum;
+        std::memcpy(&sum, place, sizeof sum);
+        sum += factor * entries.value[i];
+        std::memcpy(place, &sum, sizeof sum);
+    }
 }
 
 std::vector<SurfacePoint> sample_points(std::span<const SurfaceSample> samples) {
@@ -46,11 +57,22 @@ ExitLight::ExitLight(std::span<const SurfaceSample> samples, const SparseVectors
       cells_(std::move(cells)),
       other_(other),
       scale_(static_cast<float>(1 / (std::numbers::pi * escape))),
-      grid_(sample_points(samples), cell_size(samples)) {}
+      grid_(sample_points(samples), cell_size(samples)) {
+    std::vector<std::uint32_t> around;
+    for (std::size_t cell = 0; cell < grid_.cells(); ++cell) {
+        grid_.collect_around(grid_.name_of(cell), around);
+        around_.insert(around_.end(), around.begin(), around.end());
+        first_.push_back(static_cast<std::uint32_t>(around_.size()));
+    }
+    averages_.reserve(cells_ ? light.size() : 0);
+    for (std::size_t j = 0; cells_ && j < light.size(); ++j) {
+        averages_.push_back(cells_->averages_of(light[j]));
+    }
+}
 
 std::uint32_t ExitLight::nearest(const WalkExit& exit, std::vector<std::uint32_t>& around) const {
     constexpr float kFacing = 0.3f;
-    const auto search = [&](auto&& candidates) {
+    const auto search = [&](std::span<const std::uint32_t> candidates) {
         std::uint32_t best = formats::kNone, any = formats::kNone;
         float best_distance = std::numeric_limits<float>::max(), any_distance = best_distance;
         for (const std::uint32_t j : candidates) {
@@ -65,7 +87,12 @@ std::uint32_t ExitLight::nearest(const WalkExit& exit, std::vector<std::uint32_t
         }
         return best != formats::kNone ? best : any;
     };
-    grid_.collect_around(grid_.cell_of(exit.position), around);
+    const std::uint64_t key = grid_.cell_of(exit.position);
+    const std::size_t cell = grid_.cell_at(key);
+    if (cell < grid_.cells()) {
+        return search(std::span(around_).subspan(first_[cell], first_[cell + 1] - first_[cell]));
+    }
+    grid_.collect_around(key, around);
     const std::uint32_t near = search(around);
     if (near != formats::kNone) {
         return near;
@@ -97,36 +124,33 @@ void ExitLight::add_exit(std::uint32_t sample, const WalkExit& exit, float scale
     }
 }
 
-void ExitLight::add(std::uint32_t sample, const ExitCells::Sums& sums, std::span<float> rgbx,
+void ExitLight::add(std::uint32_t sample, const ExitCells::Sums& sums, const TexelRow& row,
                     ExitCells::Cells& cells) const {
     const SparseVector entries = light_[sample];
-    const glm::vec4& all = sums[0];
     if (cells_) {
-        cells_->add(sample, entries, sums, rgbx, cells);
+        cells_->add(sample, entries, averages_[sample], sums, row, cells);
     } else {
-        const Float4 factor{all.x, all.y, all.z, 0};
-        for (std::size_t i = 0; i < entries.index.size(); ++i) {
-            add_to(&rgbx[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
-        }
+        add_weighted(entries, sums[0], row);
     }
-    add_diffuse(sample, all, rgbx);  // the mean of a lobe over such light is 1
+    add_diffuse(sample, sums[0], row);  // the mean of a lobe over such light is 1
 }
 
-void ExitLight::add_cells(const ExitCells::Cells& cells, std::span<float> rgbx) const {
+void ExitLight::add_cells(const ExitCells::Cells& cells, const TexelRow& row) const {
     if (cells_) {
-        cells_->add_cells(cells, rgbx);
+        cells_->add_cells(cells, row);
     }
 }
 
 void ExitLight::add_diffuse(std::uint32_t sample, const glm::vec4& weight,
-                            std::span<float> rgbx) const {
+                            const TexelRow& row) const {
     if (other_ == nullptr) {
         return;
     }
     const SparseVector entries = (*other_)[sample];
+    const glm::length_t bands = row.step == 1 ? 1 : 3;
     for (std::size_t i = 0; i < entries.index.size(); ++i) {
-        float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
-        for (glm::length_t b = 0; b < 3; ++b) {
+        float* const to = &row.values[row.step * entries.index[i]];
+        for (glm::length_t b = 0; b < bands; ++b) {
             const auto band = static_cast<std::size_t>(b);
             to[b] += weight[b] * entries.value[other_->bands == 1 ? i : 3 * i + band];
         }
@@ -134,19 +158,15 @@ void ExitLight::add_diffuse(std::uint32_t sample, const glm::vec4& weight,
 }
 
 void ExitLight::add_views(std::uint32_t sample, std::span<const std::array<float, 3>> weight,
-                          std::span<float> rows) const {
+                          const TexelRow& rows) const {
     const SurfaceSample& s = samples_[sample];
     const float scale = s.area > 0 ? scale_ / s.area : 0;
-    const SparseVector entries = light_[sample];
-    const std::size_t size = rows.size() / weight.size();
-    for (std::size_t row = 0; row < weight.size(); ++row) {
-        const Float4 factor{scale * weight[row][0], scale * weight[row][1], scale * weight[row][2],
-                            0};
-        float* const to = &rows[row * size];
-        for (std::size_t i = 0; i < entries.index.size(); ++i) {
-            add_to(&to[4 * std::size_t{entries.index[i]}], factor * entries.value[i]);
-        }
-        add_diffuse(sample, {factor[0], factor[1], factor[2], 0}, rows.subspan(row * size, size));
+    const std::size_t size = rows.values.size() / weight.size();
+    for (std::size_t r = 0; r < weight.size(); ++r) {
+        const glm::vec4 factor{scale * weight[r][0], scale * weight[r][1], scale * weight[r][2], 0};
+        const TexelRow row{rows.values.subspan(r * size, size), rows.step};
+        add_weighted(light_[sample], factor, row);
+        add_diffuse(sample, factor, row);
     }
 }
 

@@ -32,28 +32,32 @@ class ExitLight {
     void add_exit(std::uint32_t sample, const WalkExit& exit, float scale,
                   ExitCells::Sums& sums) const;
 
-    /// Adds a sample's light as its exits see it: to a row of four floats per texel, and, of what
-    /// is left for `add_cells`, to `cells`.
-    void add(std::uint32_t sample, const ExitCells::Sums& sums, std::span<float> rgbx,
+    /// Adds a sample's light as its exits see it: to a row, and, of what is left for `add_cells`,
+    /// to `cells`.
+    void add(std::uint32_t sample, const ExitCells::Sums& sums, const TexelRow& row,
              ExitCells::Cells& cells) const;
     /// Adds what `add` left of all samples to the row.
-    void add_cells(const ExitCells::Cells& cells, std::span<float> rgbx) const;
+    void add_cells(const ExitCells::Cells& cells, const TexelRow& row) const;
     /// `scale` times the weight of an exit at a sample, by band; 0 where it has no area.
     glm::vec4 weigh(std::uint32_t sample, const WalkExit& exit, float scale) const;
     /// Adds a sample's diffuse light alone, `weight`ed by band; nothing where there is none.
-    void add_diffuse(std::uint32_t sample, const glm::vec4& weight, std::span<float> rgbx) const;
+    void add_diffuse(std::uint32_t sample, const glm::vec4& weight, const TexelRow& row) const;
     /// The sample's light as exits see it that forget their direction, to as many rows one after
     /// the other as are asked for, with weight[row][b].
     void add_views(std::uint32_t sample, std::span<const std::array<float, 3>> weight,
-                   std::span<float> rows) const;
+                   const TexelRow& rows) const;
 
   private:
     std::span<const SurfaceSample> samples_;
     const SparseVectors& light_;
     std::optional<ExitCells> cells_;
+    std::vector<ExitCells::Averages> averages_;  // of each sample's vector
     const SparseVectors* other_;
     float scale_;  // 1 / (pi c_exit)
     PointGrid grid_;
+    // Of each cell of the grid, the samples in it and around it: exits are many.
+    std::vector<std::uint32_t> first_{0};  // cells + 1, into around_
+    std::vector<std::uint32_t> around_;
 };
 
 }  // namespace opaline::bake

@@ -3,10 +3,57 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace opaline::bake {
+
+namespace {
+
+constexpr std::size_t kRaysTogether = 8;  // rays
+
+// Of Embree: numbers of a geometry and its triangle, weights of corners, normal.
+struct FoundTriangle {
+    std::uint32_t geometry, triangle;
+    float u, v;
+    glm::vec3 normal;
+};
+
+WalkHit describe_hit(const WalkSpace& space, const FoundTriangle& found, glm::vec3 direction) {
+    const EmbreeScene::Geometry& geometry = space.triangles->geometry(found.geometry);
+    const float length = glm::length(found.normal);
+    WalkHit hit;
+    hit.flat = length > 0 ? found.normal / length : direction;
+    hit.primitive = geometry.primitive;
+    hit.first_index = 3 * found.triangle;
+    hit.u = found.u, hit.v = found.v;
+    hit.is_own = geometry.material == space.material;
+    hit.medium = space.medium_of[geometry.material];
+    const formats::Primitive& p = space.scene->primitives[hit.primitive];
+    const std::uint32_t* corner = &p.index[hit.first_index];
+    const glm::vec3 a = (1 - hit.u - hit.v) * p.position[corner[0]];
+    const glm::vec3 b = hit.u * p.position[corner[1]], c = hit.v * p.position[corner[2]];
+    hit.position = a + b + c;
+    // Rounding of three products and two sums; and, for planes on which it is exact, some distance
+    // all the same, so that a ray that leaves the triangle does not meet it again.
+    constexpr float kRounding = std::numeric_limits<float>::epsilon();
+    const glm::vec3 size = glm::abs(a) + glm::abs(b) + glm::abs(c);
+    hit.error = kRounding * std::max(8 * glm::dot(glm::abs(hit.flat), size),
+                                     std::max({size.x, size.y, size.z}));
+    return hit;
+}
+
+// Ray `i` of several.
+template <class Rays>
+void set_ray(Rays& rays, std::size_t i, glm::vec3 origin, glm::vec3 direction, float reach) {
+    rays.org_x[i] = origin.x, rays.org_y[i] = origin.y, rays.org_z[i] = origin.z;
+    rays.dir_x[i] = direction.x, rays.dir_y[i] = direction.y, rays.dir_z[i] = direction.z;
+    rays.tfar[i] = reach;
+    rays.mask[i] = 0xffffffffu;
+}
+
+}  // namespace
 
 bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, float reach,
               WalkHit& hit) {
@@ -22,46 +69,69 @@ bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, flo
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
         return false;
     }
-    const EmbreeScene::Geometry& geometry = space.triangles->geometry(ray.hit.geomID);
-    const glm::vec3 normal(ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z);
-    const float length = glm::length(normal);
-    hit.flat = length > 0 ? normal / length : direction;
-    hit.primitive = geometry.primitive;
-    hit.first_index = 3 * ray.hit.primID;
-    hit.u = ray.hit.u, hit.v = ray.hit.v;
-    hit.is_own = geometry.material == space.material;
-    hit.medium = space.medium_of[geometry.material];
-    const formats::Primitive& p = space.scene->primitives[hit.primitive];
-    const std::uint32_t* corner = &p.index[hit.first_index];
-    const glm::vec3 a = (1 - hit.u - hit.v) * p.position[corner[0]];
-    const glm::vec3 b = hit.u * p.position[corner[1]], c = hit.v * p.position[corner[2]];
-    hit.position = a + b + c;
-    // Rounding of three products and two sums; and, for planes on which it is exact, some distance
-    // all the same, so that a ray that leaves the triangle does not meet it again.
-    constexpr float kRounding = std::numeric_limits<float>::epsilon();
-    const glm::vec3 size = glm::abs(a) + glm::abs(b) + glm::abs(c);
-    hit.error = kRounding * std::max(8 * glm::dot(glm::abs(hit.flat), size),
-                                     std::max({size.x, size.y, size.z}));
+    hit = describe_hit(space,
+                       {ray.hit.geomID,
+                        ray.hit.primID,
+                        ray.hit.u,
+                        ray.hit.v,
+                        {ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}},
+                       direction);
     return true;
 }
 
-bool sees(const WalkSpace& space, glm::vec3 from, glm::vec3 to) {
-    constexpr float kBefore = 0.999f;
-    const glm::vec3 way = to - from;
-    const float length = glm::length(way);
-    if (!(length > 0)) {
-        return true;
-    }
-    const glm::vec3 direction = way / length;
+std::vector<std::optional<WalkHit>> find_hits(const WalkSpace& space, glm::vec3 origin,
+                                              std::span<const glm::vec3> directions) {
+    std::vector<std::optional<WalkHit>> hits(directions.size());
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    RTCRay ray{};
-    ray.org_x = from.x, ray.org_y = from.y, ray.org_z = from.z;
-    ray.dir_x = direction.x, ray.dir_y = direction.y, ray.dir_z = direction.z;
-    ray.tfar = kBefore * length;
-    ray.mask = 0xffffffffu;
-    rtcOccluded1(space.triangles->handle(), &context, &ray);
-    return ray.tfar >= 0;  // -inf where something was hit
+    for (std::size_t first = 0; first < directions.size(); first += kRaysTogether) {
+        const std::size_t here = std::min(kRaysTogether, directions.size() - first);
+        RTCRayHit8 ray{};
+        alignas(32) std::array<int, kRaysTogether> valid{};
+        for (std::size_t i = 0; i < here; ++i) {
+            valid[i] = -1;
+            set_ray(ray.ray, i, origin, directions[first + i],
+                    std::numeric_limits<float>::infinity());
+            ray.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect8(valid.data(), space.triangles->handle(), &context, &ray);
+        for (std::size_t i = 0; i < here; ++i) {
+            if (ray.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
+                hits[first + i] =
+                    describe_hit(space,
+                                 {ray.hit.geomID[i],
+                                  ray.hit.primID[i],
+                                  ray.hit.u[i],
+                                  ray.hit.v[i],
+                                  {ray.hit.Ng_x[i], ray.hit.Ng_y[i], ray.hit.Ng_z[i]}},
+                                 directions[first + i]);
+            }
+        }
+    }
+    return hits;
+}
+
+void find_seen(const WalkSpace& space, glm::vec3 from, std::span<const glm::vec3> to,
+               std::vector<std::uint8_t>& seen) {
+    constexpr float kBefore = 0.999f;
+    seen.assign(to.size(), 1);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    for (std::size_t first = 0; first < to.size(); first += kRaysTogether) {
+        const std::size_t here = std::min(kRaysTogether, to.size() - first);
+        RTCRay8 ray{};
+        alignas(32) std::array<int, kRaysTogether> valid{};
+        for (std::size_t i = 0; i < here; ++i) {
+            const glm::vec3 way = to[first + i] - from;
+            const float length = glm::length(way);
+            valid[i] = length > 0 ? -1 : 0;
+            set_ray(ray, i, from, way / length, kBefore * length);
+        }
+        rtcOccluded8(valid.data(), space.triangles->handle(), &context, &ray);
+        for (std::size_t i = 0; i < here; ++i) {
+            seen[first + i] = valid[i] == 0 || ray.tfar[i] >= 0 ? 1 : 0;  // -inf: hit
+        }
+    }
 }
 
 glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit) {

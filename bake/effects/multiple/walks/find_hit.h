@@ -2,6 +2,9 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "bake/effects/multiple/walks/walk_space.h"
 
@@ -22,8 +25,14 @@ struct WalkHit {
 bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, float reach,
               WalkHit& hit);
 
-/// No triangle lies between two points, but for the last thousandth of the way.
-bool sees(const WalkSpace& space, glm::vec3 from, glm::vec3 to);
+/// The same of several flights from one point, to any distance; none where there is no triangle.
+std::vector<std::optional<WalkHit>> find_hits(const WalkSpace& space, glm::vec3 origin,
+                                              std::span<const glm::vec3> directions);
+
+/// For each of `to` 1 if no triangle lies between it and `from`, but for the last thousandth of the
+/// way, else 0. Overwrites `seen`.
+void find_seen(const WalkSpace& space, glm::vec3 from, std::span<const glm::vec3> to,
+               std::vector<std::uint8_t>& seen);
 
 /// The interpolated normal, unit; the triangle's own where that faces away from it.
 glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit);

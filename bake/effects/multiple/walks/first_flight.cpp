@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/scattering/fresnel.h"
@@ -21,18 +23,18 @@ class FlightTracer {
         }
     }
 
-    // The share of the view's light that is lost through a hole.
-    float follow(glm::vec3 position, glm::vec3 direction, int shells, std::uint32_t view) {
+    // The share of the view's light that is lost through a hole. `next`: what it meets first.
+    float follow(glm::vec3 position, glm::vec3 direction, int shells, std::uint32_t view,
+                 std::optional<WalkHit> next) {
         constexpr int kMostSurfaces = 16;
         constexpr float kLeast = 1e-3f;
         PerGroup left{1, 1, 1};
         for (int i = 0; i < kMostSurfaces; ++i) {
-            WalkHit hit;
-            if (!find_hit(space_, position, direction, std::numeric_limits<float>::infinity(),
-                          hit)) {
+            if (!next) {
                 scatter_along(position, direction, to_box(position, direction), view, left);
                 return mean(left);
             }
+            const WalkHit hit = *next;
             scatter_along(position, direction, glm::distance(hit.position, position), view, left);
             if (!hit.is_own) {
                 return 0;
@@ -41,11 +43,16 @@ class FlightTracer {
             shells -= static_cast<int>(side);
             if (shells > 0) {
                 position = hit.position + side * 2 * hit.error * hit.flat;
-                continue;
+            } else {
+                shells = 1;
+                if (!reflect(hit, position, direction, left) || mean(left) < kLeast) {
+                    return 0;
+                }
             }
-            shells = 1;
-            if (!reflect(hit, position, direction, left) || mean(left) < kLeast) {
-                return 0;
+            next.emplace();
+            if (!find_hit(space_, position, direction, std::numeric_limits<float>::infinity(),
+                          *next)) {
+                next.reset();
             }
         }
         return 0;
@@ -131,9 +138,10 @@ FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views,
     FirstFlight nodes;
     const int shells = std::max(1, count_shells(space, point.inner, -point.normal));
     FlightTracer tracer(space, nodes);
+    const std::vector<std::optional<WalkHit>> first = find_hits(space, point.inner, views.into);
     float lost = 0;
     for (std::uint32_t v = 0; v < views.into.size(); ++v) {
-        lost += views.share[v][0] * tracer.follow(point.inner, views.into[v], shells, v);
+        lost += views.share[v][0] * tracer.follow(point.inner, views.into[v], shells, v, first[v]);
     }
     if (lost > 0 && lost < 0.5f) {
         for (FlightNode& node : nodes) {

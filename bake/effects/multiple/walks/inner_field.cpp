@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "bake/effects/multiple/walks/find_hit.h"
 
@@ -75,7 +77,8 @@ std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
     const glm::vec3 along = glm::normalize(centre.direction);
     const float stretch = std::max(1.0f, reach_of(space) / radius_);
     std::vector<std::uint32_t> around;
-    std::vector<Neighbour> neighbours;
+    std::vector<Neighbour> near;
+    std::vector<glm::vec3> places;
     const int steps = static_cast<int>(std::ceil(stretch - 0.5f));
     for (int step = 0; step <= steps; ++step) {
         const glm::vec3 below = static_cast<float>(step) * radius_ * point.normal;
@@ -92,11 +95,21 @@ std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
             if (!is_isotropic_) {
                 kernel *= std::max(0.0f, glm::dot(arrival_[s], along));
             }
-            if (kernel > 0 && sees(space, point.inner, position_[s])) {
-                const float depth = glm::dot(point.position - position_[s], point.normal);
-                kernel *= kernel * std::exp(std::min(0.0f, (depth_[s] - depth) / path_));
-                neighbours.push_back({s, static_cast<double>(kernel)});
+            if (kernel > 0) {
+                near.push_back({s, static_cast<double>(kernel)});
+                places.push_back(position_[s]);
             }
+        }
+    }
+    std::vector<std::uint8_t> seen;
+    find_seen(space, point.inner, places, seen);
+    std::vector<Neighbour> neighbours;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+        if (seen[i] != 0) {
+            const auto kernel = static_cast<float>(near[i].kernel);
+            const float depth = glm::dot(point.position - places[i], point.normal);
+            const float shade = std::exp(std::min(0.0f, (depth_[near[i].site] - depth) / path_));
+            neighbours.push_back({near[i].site, static_cast<double>(kernel * (kernel * shade))});
         }
     }
     return neighbours.size() < std::min(kFewest, position_.size()) ? nearest(centre) : neighbours;
@@ -150,48 +163,69 @@ void InnerField::weigh(const WalkSpace& space, const BodyPoint& point, const Vie
     const std::size_t groups = space.bands.size();
 
     // What the flight makes of each function, column by column: rows of each group.
-    Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(functions),
-                                                    static_cast<Eigen::Index>(groups * rows));
-    for (const FlightNode& node : flight) {
-        const Functions at = eval(centre, node.position, node.direction);
-        const auto& share = views.share[node.view];
-        for (std::size_t g = 0; g < groups; ++g) {
-            for (std::size_t r = 0; r < rows; ++r) {
-                const double weight = static_cast<double>(node.weight[g] * share[r]);
-                double* const to = &moments(0, static_cast<Eigen::Index>(g * rows + r));
+    using ByFunction = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    const std::size_t columns = groups * rows;
+    ByFunction moments =
+        ByFunction::Zero(static_cast<Eigen::Index>(functions), static_cast<Eigen::Index>(columns));
+    for (std::size_t first = 0, end = 0; first < flight.size(); first = end) {
+        const std::uint32_t view = flight[first].view;
+        std::array<Functions, 3> of_view{};  // of each group
+        for (end = first; end < flight.size() && flight[end].view == view; ++end) {
+            const FlightNode& node = flight[end];
+            const Functions at = eval(centre, node.position, node.direction);
+            for (std::size_t g = 0; g < groups; ++g) {
+                const auto weight = static_cast<double>(node.weight[g]);
                 for (std::size_t f = 0; f < functions; ++f) {
-                    to[f] += weight * at[f];
+                    of_view[g][f] += weight * at[f];
+                }
+            }
+        }
+        for (std::size_t f = 0; f < functions; ++f) {
+            double* const to = moments.data() + f * columns;
+            for (std::size_t g = 0; g < groups; ++g) {
+                for (std::size_t r = 0; r < rows; ++r) {
+                    to[g * rows + r] += static_cast<double>(views.share[view][r]) * of_view[g][f];
                 }
             }
         }
     }
-    using Row = Eigen::Map<const Eigen::VectorXd>;
     const auto size = static_cast<Eigen::Index>(functions);
-    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(size, size);
+    ByFunction matrix = ByFunction::Zero(size, size);  // its lower half
     std::vector<Functions> at;
     at.reserve(neighbours.size());
     for (const Neighbour& n : neighbours) {
-        at.push_back(eval(centre, position_[n.site], arrival_[n.site]));
-        const Row row(at.back().data(), size);
-        matrix.noalias() += n.kernel * row * row.transpose();
+        const Functions& own = at.emplace_back(eval(centre, position_[n.site], arrival_[n.site]));
+        for (std::size_t i = 0; i < functions; ++i) {
+            const double factor = n.kernel * own[i];
+            double* const to = matrix.data() + i * functions;
+            for (std::size_t j = 0; j <= i; ++j) {
+                to[j] += factor * own[j];
+            }
+        }
     }
     // Slopes that no site tells about are 0.
     constexpr double kRidge = 1e-4;
     for (Eigen::Index i = 1; i < size; ++i) {
         matrix(i, i) += kRidge * matrix(0, 0);
     }
-    const Eigen::MatrixXd solved = matrix.ldlt().solve(moments);
+    const ByFunction solved = matrix.ldlt().solve(moments);
+    weights.reserve(neighbours.size());
     for (std::size_t s = 0; s < neighbours.size(); ++s) {
-        const Eigen::RowVectorXd value =
-            neighbours[s].kernel * (Row(at[s].data(), size).transpose() * solved);
-        InnerWeight weight{neighbours[s].site, {}};
-        for (std::size_t g = 0; g < groups; ++g) {
-            for (std::size_t r = 0; r < rows; ++r) {
-                weight.row[r][g] =
-                    static_cast<float>(value(static_cast<Eigen::Index>(g * rows + r)));
+        std::array<double, 3 * (1 + kAllDegrees)> value{};
+        for (std::size_t f = 0; f < functions; ++f) {
+            const double factor = neighbours[s].kernel * at[s][f];
+            const double* const from = solved.data() + f * columns;
+            for (std::size_t c = 0; c < columns; ++c) {
+                value[c] += factor * from[c];
             }
         }
-        weights.push_back(weight);
+        InnerWeight& weight = weights.emplace_back();
+        weight.site = neighbours[s].site;
+        for (std::size_t g = 0; g < groups; ++g) {
+            for (std::size_t r = 0; r < rows; ++r) {
+                weight.row[r][g] = static_cast<float>(value[g * rows + r]);
+            }
+        }
     }
 }
 

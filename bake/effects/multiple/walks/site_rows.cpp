@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "bake/base/largest.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/base/vector8.h"
 #include "bake/effects/multiple/walks/view_fit.h"
 #include "formats/opal/cubemap.h"
 
@@ -29,7 +29,9 @@ class SiteWalker {
           light_(light),
           options_(options),
           view_fit_(view_fit),
-          dense_(4 * options.views * std::size_t{formats::cubemap_texels(options.cubemap_size)}) {}
+          step_(options.bands == 1 ? 1 : 4),
+          dense_(step_ * options.views *
+                 std::size_t{formats::cubemap_texels(options.cubemap_size)}) {}
 
     // The dense rows of one site.
     std::span<float> walk(const WalkStart& start, std::uint32_t site, WalkCounts& counts) {
@@ -84,7 +86,7 @@ class SiteWalker {
             by_sample_.begin(), by_sample_.end(),
             [](const SampleExit& a, const SampleExit& b) { return a.sample < b.sample; });
         const std::size_t size = dense_.size() / options_.views;
-        const std::span<float> row = std::span(dense_).first(size);
+        const TexelRow row{std::span(dense_).first(size), step_};
         ExitCells::Cells cells{};
         for (std::size_t i = 0; i < by_sample_.size();) {
             const std::uint32_t sample = by_sample_[i].sample;
@@ -108,7 +110,7 @@ class SiteWalker {
             light_.add_diffuse(sample, diffuse, row);
             if (options_.views > 1) {
                 light_.add_views(sample, std::span(views).first(options_.views - 1),
-                                 std::span(dense_).subspan(size));
+                                 {std::span(dense_).subspan(size), step_});
             }
         }
         light_.add_cells(cells, row);
@@ -118,6 +120,7 @@ class SiteWalker {
     const ExitLight& light_;
     const SiteRowOptions& options_;
     const ViewFit& view_fit_;
+    std::size_t step_;  // floats per texel
     std::vector<float> dense_;
     std::vector<WalkExit> exits_;
     std::vector<ViewLobe> seen_;  // of each exit, what its walk's view adds to the rows by view
@@ -126,20 +129,24 @@ class SiteWalker {
 };
 
 // The entries that matter most to the eye, whatever their band; always the six face averages.
-void append_row(SiteRows::Block& block, std::span<const float> rgbx, std::uint32_t bands,
+// `row`: four floats per texel, or one with one band.
+void append_row(SiteRows::Block& block, std::span<const float> row, std::uint32_t bands,
                 std::size_t kept) {
-    const std::size_t size = rgbx.size() / 4, face = size / 6;
+    const std::size_t step = bands == 1 ? 1 : 4, size = row.size() / step, face = size / 6;
     std::vector<float> score(size);
     for (std::size_t k = 0; k < size; ++k) {
-        const float* v = &rgbx[4 * k];
-        score[k] = k % face == 0
-                       ? std::numeric_limits<float>::max()
+        const float* v = &row[step * k];
+        score[k] = bands == 1
+                       ? std::abs(v[0])
                        : 0.2f * std::abs(v[0]) + 0.7f * std::abs(v[1]) + 0.1f * std::abs(v[2]);
+    }
+    for (std::size_t k = 0; k < size; k += face) {
+        score[k] = std::numeric_limits<float>::max();
     }
     for (const std::uint32_t k : find_largest(score, std::max<std::size_t>(kept, 6))) {
         block.index.push_back(k);
         for (std::size_t b = 0; b < bands; ++b) {
-            block.value.push_back(rgbx[4 * std::size_t{k} + b]);
+            block.value.push_back(row[step * k + b]);
         }
     }
     block.offset.push_back(static_cast<std::uint32_t>(block.index.size()));
@@ -238,27 +245,95 @@ void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, gl
 SiteRowSum::SiteRowSum(std::size_t texels, std::uint32_t rows, std::uint32_t bands)
     : rows_(rows),
       bands_(bands),
+      texels_(texels),
       lanes_(bands == 1 ? 4 * std::size_t{(rows + 3) / 4} : 4 * std::size_t{rows}),
-      sum_(texels * lanes_) {}
+      lines_((texels * lanes_ + 15) / 16 + 1) {}
 
 namespace {
 
-// sum[lanes * index[k] + lane] += factor[lane] * value of k. `kLanes` 0: known at run time alone.
-template <std::size_t kLanes>
-void add_entries(std::span<const std::uint32_t> index, const float* value, std::uint32_t bands,
-                 const float* factor, std::size_t lanes, float* sum) {
-    lanes = kLanes > 0 ? kLanes : lanes;
-    for (const std::uint32_t texel : index) {
-        const Float4 v = bands == 1 ? Float4{value[0], value[0], value[0], value[0]}
-                                    : Float4{value[0], value[1], value[2], 0};
-        value += bands;
-        float* const to = sum + lanes * texel;
-        for (std::size_t lane = 0; lane < lanes; lane += 4) {
-            Float4 all, f;
-            std::memcpy(&all, to + lane, sizeof all);
-            std::memcpy(&f, factor + lane, sizeof f);
-            all += f * v;
-            std::memcpy(to + lane, &all, sizeof all);
+constexpr std::size_t kMostLanes = 4 * SiteRowSum::kMostRows;
+
+struct Entries {
+    std::span<const std::uint32_t> index;
+    const float* value;
+    std::uint32_t bands;
+};
+
+// sum[lanes * index[k] + lane] += factor[lane] * value of k.
+template <class Vector, std::size_t kVectors>
+OPALINE_INLINE void add_entries(const Entries& entries, const float* factor, std::size_t vectors,
+                                float* sum) {
+    constexpr std::size_t kWidth = sizeof(Vector) / sizeof(float);
+    vectors = kVectors > 0 ? kVectors : vectors;
+    const std::size_t bands = entries.bands;
+    const std::uint32_t* const index = entries.index.data();
+    const std::size_t count = entries.index.size();
+    for (std::size_t k = 0; k < count; ++k) {
+        const float* const from = entries.value + bands * k;
+        const Float4 own = bands == 1 ? Float4{from[0], from[0], from[0], from[0]}
+                                      : Float4{from[0], from[1], from[2], 0};
+        Vector value{};
+        for (std::size_t part = 0; part < kWidth; part += 4) {
+            __builtin_memcpy(reinterpret_cast<char*>(&value) + part * sizeof(float), &own,
+                             sizeof own);
+        }
+        float* const to = sum + vectors * kWidth * index[k];
+        for (std::size_t v = 0; v < vectors; ++v) {
+            Vector all, f;
+            __builtin_memcpy(&all, to + v * kWidth, sizeof all);
+            __builtin_memcpy(&f, factor + v * kWidth, sizeof f);
+            all += f * value;
+            __builtin_memcpy(to + v * kWidth, &all, sizeof all);
+        }
+    }
+}
+
+using Float16 = float __attribute__((vector_size(64)));
+
+OPALINE_VECTOR_CLONES
+void add_to_four_lanes(const Entries& entries, const float* factor, float* sum) {
+    add_entries<Float4, 1>(entries, factor, 1, sum);
+}
+
+OPALINE_VECTOR_CLONES
+void add_to_sixteen_lanes(const Entries& entries, const float* factor, float* sum) {
+    add_entries<Float16, 1>(entries, factor, 1, sum);
+}
+
+OPALINE_VECTOR_CLONES
+void add_to_lanes(const Entries& entries, const float* factor, std::size_t lanes, float* sum) {
+    add_entries<Float4, 0>(entries, factor, lanes / 4, sum);
+}
+
+// A plane of a receiver's rows, and its share of each row of the sums.
+struct Plane {
+    float* to;
+    const float* share;
+};
+
+// to[k] += share[row] * sums[lanes * k + step * row] for all planes and rows.
+OPALINE_VECTOR_CLONES
+void add_shares(const float* sums, std::size_t lanes, std::size_t step, std::size_t texels,
+                std::size_t rows, const Plane* planes, std::size_t count) {
+    constexpr std::size_t kPart = 32;
+    float column[SiteRowSum::kMostRows][kPart];
+    for (std::size_t first = 0; first < texels; first += kPart) {
+        const std::size_t here = texels - first < kPart ? texels - first : kPart;
+        for (std::size_t k = 0; k < here; ++k) {
+            for (std::size_t row = 0; row < rows; ++row) {
+                column[row][k] = sums[lanes * (first + k) + step * row];
+            }
+        }
+        for (std::size_t p = 0; p < count; ++p) {
+            float* const to = planes[p].to + first;
+            for (std::size_t row = 0; row < rows; ++row) {
+                const float share = planes[p].share[row];
+                if (share != 0) {
+                    for (std::size_t k = 0; k < here; ++k) {
+                        to[k] += share * column[row][k];
+                    }
+                }
+            }
         }
     }
 }
@@ -266,26 +341,34 @@ void add_entries(std::span<const std::uint32_t> index, const float* value, std::
 }  // namespace
 
 void SiteRowSum::add(const SiteRows& from, std::size_t site, const Weights& weights) {
-    constexpr std::size_t kMostLanes = 36;
     std::array<float, kMostLanes> factor{};
     for (std::uint32_t r = 0; r < rows_; ++r) {
         for (std::uint32_t b = 0; b < bands_; ++b) {
-            factor[bands_ == 1 ? r : 4 * r + b] = weights[r][b];
+            factor[lane(r, b)] = weights[r][b];
         }
     }
     const SiteRows::Block& block = from.blocks[site / SiteRows::kPerBlock];
     const std::size_t i = site % SiteRows::kPerBlock, first = block.offset[i];
-    const auto add = lanes_ == 4 ? add_entries<4> : lanes_ == 16 ? add_entries<16> : add_entries<0>;
-    add(std::span(block.index).subspan(first, block.offset[i + 1] - first),
-        block.value.data() + bands_ * first, bands_, factor.data(), lanes_, sum_.data());
+    const Entries entries{std::span(block.index).subspan(first, block.offset[i + 1] - first),
+                          block.value.data() + bands_ * first, bands_};
+    float* const sum = lines_.front().value.data();
+    if (lanes_ == 4) {
+        add_to_four_lanes(entries, factor.data(), sum);
+    } else if (lanes_ == 16) {
+        add_to_sixteen_lanes(entries, factor.data(), sum);
+    } else {
+        add_to_lanes(entries, factor.data(), lanes_, sum);
+    }
 }
 
-void SiteRowSum::add_to(std::uint32_t row, std::span<float> rgbx) const {
-    const std::size_t step = bands_ == 1 ? 1 : 4;
-    for (std::size_t k = 0; k < sum_.size() / lanes_; ++k) {
-        for (std::size_t b = 0; b < step; ++b) {
-            rgbx[step * k + b] += sum_[lanes_ * k + step * row + b];
+void SiteRowSum::add_to(std::span<const Share> shares, const DenseRow& to) const {
+    std::vector<Plane> planes(shares.size());
+    for (std::uint32_t band = 0; band < bands_; ++band) {
+        for (std::size_t s = 0; s < shares.size(); ++s) {
+            planes[s] = {to.plane(shares[s].term, band).data(), shares[s].of_row.data()};
         }
+        add_shares(sums() + lane(0, band), lanes_, lane(1, 0), texels_, rows_, planes.data(),
+                   planes.size());
     }
 }
 

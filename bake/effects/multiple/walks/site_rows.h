@@ -9,6 +9,7 @@
 #include "bake/base/context.h"
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/effects/multiple/walks/walk.h"
+#include "bake/plan/dense_rows.h"
 
 namespace opaline::bake {
 
@@ -44,9 +45,9 @@ std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
                                         const Context& context);
 
 /// For each site the mean of its walks' exits, each as the light of a sample nearby: T_0
-/// (README.md, "The estimator"). `subtract(site, rgbx)`, if there is one, subtracts what is known
-/// of a row before it is truncated. No walk is stored. The same bits for any number of threads;
-/// incomplete if the context is cancelled.
+/// (README.md, "The estimator"). `subtract(site, row)`, if there is one, subtracts what is known of
+/// a row, four floats per texel (one with one band), before it is truncated. No walk is stored. The
+/// same bits for any number of threads; incomplete if the context is cancelled.
 SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> starts,
                          const ExitLight& light, const SiteRowOptions& options,
                          const std::function<void(std::size_t, std::span<float>)>& subtract,
@@ -60,18 +61,39 @@ void add_site_row(const SiteRows& rows, std::size_t site, std::uint32_t view, gl
 /// Adds up rows of sites with one row, weighted for several rows of a receiver at once.
 class SiteRowSum {
   public:
-    /// `texels` of a row; `rows` of the receiver, at most 9; `bands` as of the sites.
+    static constexpr std::size_t kMostRows = 9;
+    /// `texels` of a row; `rows` of the receiver, at most kMostRows; `bands` as of the sites.
     SiteRowSum(std::size_t texels, std::uint32_t rows, std::uint32_t bands);
 
-    using Weights = std::array<std::array<float, 3>, 9>;  ///< of each row, per band
+    using Weights = std::array<std::array<float, 3>, kMostRows>;  ///< of each row, per band
     void add(const SiteRows& from, std::size_t site, const Weights& weights);
-    /// Adds row `row` to four floats per texel (one with one band).
-    void add_to(std::uint32_t row, std::span<float> rgbx) const;
+
+    float at(std::uint32_t row, std::size_t texel, std::uint32_t band) const {
+        return sums()[lanes_ * texel + lane(row, band)];
+    }
+    /// What a term of a receiver takes of each row.
+    struct Share {
+        std::uint32_t term = 0;
+        std::array<float, kMostRows> of_row{};
+    };
+    /// Adds to each of these terms its shares of the rows. Precondition: `to` has the texels and
+    /// bands of this.
+    void add_to(std::span<const Share> shares, const DenseRow& to) const;
 
   private:
+    // A line of the cache: a texel whose rows and bands fill it is read and written at once.
+    struct alignas(64) Line {
+        std::array<float, 16> value{};
+    };
+    // Of a texel: its rows side by side, four floats each (one with one band).
+    std::size_t lane(std::uint32_t row, std::uint32_t band) const {
+        return bands_ == 1 ? row : 4 * std::size_t{row} + band;
+    }
+    const float* sums() const { return lines_.front().value.data(); }
+
     std::uint32_t rows_, bands_;
-    std::size_t lanes_;  // of a texel: its rows side by side, four floats each (one with one band)
-    std::vector<float> sum_;
+    std::size_t texels_, lanes_;
+    std::vector<Line> lines_;
 };
 
 }  // namespace opaline::bake

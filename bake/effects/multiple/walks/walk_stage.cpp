@@ -116,10 +116,11 @@ float WalkStage::tint(glm::vec3 position, glm::vec3 normal) const {
     return glm::dot(sum, glm::vec3(0.2126f, 0.7152f, 0.0722f)) / kDepths.size();
 }
 
-namespace {
-
-void add_outer_rows(const WalkStage& stage, const BodyPoint& point, float scale,
-                    std::span<float> rgbx, std::span<float> views) {
+void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
+                     std::span<float> rgbx, std::span<float> views) {
+    if (stage.rows.blocks.empty()) {
+        return;
+    }
     std::vector<SiteWeight> weights;
     stage.field.weigh(point.position, point.normal, weights,
                       stage.tint(point.position, point.normal));
@@ -138,44 +139,32 @@ void add_outer_rows(const WalkStage& stage, const BodyPoint& point, float scale,
     }
 }
 
-void add_inner_rows(const WalkStage& stage, const BodyPoint& point, float scale,
-                    std::span<float> rgbx, std::span<float> views) {
+SiteRowSum sum_inner_rows(const WalkStage& stage, const BodyPoint& point, std::size_t texels,
+                          std::uint32_t rows) {
+    SiteRowSum sum(texels, rows, stage.rows.bands);
     if (point.normal == glm::vec3(0)) {
-        return;
+        return sum;
     }
     const WalkSpace& space = *stage.space;
-    const auto rows = static_cast<std::uint32_t>(1 + views.size() / rgbx.size());
     const ViewSet seen =
         make_view_set(stage.view_fit, static_cast<double>(space.eta), point.normal, rows);
     const FirstFlight flight = trace_first_flight(space, seen, point);
     std::vector<InnerWeight> weights;
     stage.inner.weigh(space, point, seen, flight, rows, weights);
-    SiteRowSum sum(rgbx.size() / (stage.rows.bands == 1 ? 1 : 4), rows, stage.rows.bands);
     for (const InnerWeight& w : weights) {
         SiteRowSum::Weights by_band{};
         for (std::uint32_t r = 0; r < rows; ++r) {
             for (std::size_t g = 0; g < space.bands.size(); ++g) {
                 for (std::size_t b = 0; b < 3; ++b) {
                     if (space.bands[g].member[b]) {
-                        by_band[r][b] = scale * w.row[r][g];
+                        by_band[r][b] = w.row[r][g];
                     }
                 }
             }
         }
         sum.add(stage.rows, w.site, by_band);
     }
-    for (std::uint32_t r = 0; r < rows; ++r) {
-        sum.add_to(r, r == 0 ? rgbx : views.subspan((r - 1) * rgbx.size(), rgbx.size()));
-    }
-}
-
-}  // namespace
-
-void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
-                     std::span<float> rgbx, std::span<float> views) {
-    if (!stage.rows.blocks.empty()) {
-        (stage.inner.empty() ? add_outer_rows : add_inner_rows)(stage, point, scale, rgbx, views);
-    }
+    return sum;
 }
 
 }  // namespace opaline::bake

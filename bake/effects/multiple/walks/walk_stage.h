@@ -75,10 +75,16 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
                      const std::function<void(std::size_t, std::span<float>)>& subtract,
                      const Context& context);
 
-/// Adds the row of a receiver, T_0, times `scale`, to four floats per texel (one with one band),
-/// and those that say how it changes with the view (SiteRows) to `views`: none, 3 or 8, one after
-/// the other. Precondition: the stage has as many.
+/// Adds the row of a receiver, T_0, times `scale`, from sites on the surface, to four floats per
+/// texel (one with one band), and those that say how it changes with the view (SiteRows) to
+/// `views`: none, 3 or 8, one after the other. Precondition: the stage has as many, and no sites
+/// inside.
 void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
                      std::span<float> rgbx, std::span<float> views);
+
+/// The same rows, 1, 4 or 9, from sites inside. Precondition: the stage has some. `texels` of a
+/// row.
+SiteRowSum sum_inner_rows(const WalkStage& stage, const BodyPoint& point, std::size_t texels,
+                          std::uint32_t rows);
 
 }  // namespace opaline::bake
