@@ -22,6 +22,7 @@ using formats::Rgb;
 using formats::Vec3;
 
 constexpr double kSlack = 1e-3;  // of a step, which rounding may add
+constexpr float kDarkest = 12;   // optical depth at which a march ends: 6e-6 of a sun is left
 
 // work(brick) for each of `count`, in pieces.
 template <class Work>
@@ -98,8 +99,8 @@ float sum_steps(const PaddedBrick& brick, const BrickWalk& walk, const BrickSpan
     return sum;
 }
 
-// Density times way [m] from a point out of the volume.
-float find_column(const Field& field, Vec3 from, Vec3 direction) {
+// Density times way [m] from a point out of the volume, or to where it exceeds `most`.
+float find_column(const Field& field, Vec3 from, Vec3 direction, float most) {
     const VolumeLattice& lattice = field.lattice;
     BrickWalk walk = start_walk(lattice, from, direction, 0, HUGE_VAL);
     if (!(walk.t < walk.end)) return 0;
@@ -107,7 +108,7 @@ float find_column(const Field& field, Vec3 from, Vec3 direction) {
     const double boxes = sun_boxes(*lattice.record);
     const double steps_a_metre = boxes * std::hypot(d[0], d[1], d[2]);
     float column = 0;
-    while (const auto span = next_brick(lattice, walk)) {
+    for (std::optional<BrickSpan> span; column <= most && (span = next_brick(lattice, walk));) {
         const double length = span->end - span->begin;
         // A brick's diagonal is sqrt(3) of its edge.
         const double count = std::clamp(std::ceil(length * steps_a_metre - kSlack), 1.0, 2 * boxes);
@@ -122,7 +123,10 @@ float find_column(const Field& field, Vec3 from, Vec3 direction) {
 Rgb find_share(std::span<const Field> fields, Vec3 from, Vec3 sun) {
     Rgb depth;
     for (const Field& field : fields) {
-        const Rgb own = find_column(field, from, sun) * field.lattice.record->sigma_t;
+        const Rgb& sigma_t = field.lattice.record->sigma_t;
+        const float least = std::min({sigma_t.r, sigma_t.g, sigma_t.b});
+        const float most = least > 0 ? kDarkest / least : HUGE_VALF;
+        const Rgb own = find_column(field, from, sun, most) * sigma_t;
         depth = depth + tame(own, kLargestExtinction);
     }
     return {std::exp(-depth.r), std::exp(-depth.g), std::exp(-depth.b)};

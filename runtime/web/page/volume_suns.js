@@ -2,6 +2,7 @@
 // How much of suns' light reaches the points of volumes: the steps of runtime/volumes/sun_light.cpp.
 const VolumeSuns = (() => {
   const kNone = 0xffffffff, kSlack = 1e-3;  // of a step, which rounding may add
+  const kDarkest = 12;  // optical depth at which a march ends
 
   // Boxes between points along a brick's edge.
   const boxesOf = volume => Math.min(16 / volume.spacing, 8);
@@ -48,7 +49,7 @@ const VolumeSuns = (() => {
     return (1 - w) * (low + v * (row(at + 9) - low)) + w * (high + v * (row(at + 90) - high));
   }
 
-  // Density times way [m] from `from` out of the volume; places in bricks from the table's corner.
+  // Density times way [m] from `from` out of the volume, or to where nothing is left; places in bricks from the table's corner.
   function column(volumes, volume, padded, from, direction) {
     const { extent } = volume, cell = [0, 0, 0];
     let t = 0, end = Infinity;
@@ -66,8 +67,9 @@ const VolumeSuns = (() => {
       cell[a] = Math.min(Math.max(Math.floor(from[a] + t * direction[a]), 0), extent[a] - 1);
     }
     const boxes = boxesOf(volume), steps = boxes * Vector.norm(direction), place = x => Math.min(Math.max(8 * x, 0), 8);
+    const most = kDarkest / Math.min(...volume.extinction);
     let sum = 0;
-    while (t < end) {
+    while (t < end && sum <= most) {
       let leaves = Infinity, axis = 0;
       for (let a = 0; a < 3; ++a) {
         if (direction[a] === 0) continue;
