@@ -25,7 +25,10 @@ opaline_status opaline_gl_light_volumes(opaline_gl* gl, const opaline_volume_lig
     }
     return guarded([&] {
         const runtime::SavedState saved(gl->gl);
-        gl->volumes.upload(volume_light->light);
+        if (const opaline_status status = gl->volumes.upload(volume_light->light);
+            status != OPALINE_OK) {
+            return status;
+        }
         return runtime::check_errors(gl->gl, "uploading the light of volumes");
     });
 }

@@ -161,14 +161,14 @@ std::uint32_t most_node_terms(const formats::VolumesView& volumes) {
     return most;
 }
 
-std::size_t most_coefficients(const formats::VolumesView& volumes) {
+std::size_t count_coefficients(const formats::VolumesView& volumes) {
     std::size_t count = 0;
     for (std::size_t v = 0; v < volumes.records.size(); ++v) {
         const formats::VolumeRecord& record = volumes.records[v];
         const std::span<const float> phase = volumes.phase_of(v);
         VolumeLight::Part part;
         if (needs_suns(record, phase)) {
-            part.suns = kMaxSuns;
+            part.suns = 1;
             part.sun_terms = make_sun_phase(record, phase).terms;
             part.sun_boxes = sun_boxes(record);
         }

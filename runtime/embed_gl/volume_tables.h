@@ -35,8 +35,8 @@ std::vector<std::uint32_t> pack_glow(const formats::VolumesView& volumes);
 
 /// The most terms of a node of any volume, suns left out; at least 1.
 std::uint32_t most_node_terms(const formats::VolumesView& volumes);
-/// Coefficients of VolumeLight, those of kMaxSuns suns included where a volume may have suns.
-std::size_t most_coefficients(const formats::VolumesView& volumes);
+/// Coefficients of VolumeLight under a light with one sun.
+std::size_t count_coefficients(const formats::VolumesView& volumes);
 
 /// Volume of volume_march.glsl, in std140 as in std430.
 struct ShaderVolume {

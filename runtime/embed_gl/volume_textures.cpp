@@ -21,7 +21,7 @@ opaline_status VolumeTextures::check_sizes(const formats::VolumesView& volumes) 
     for (const Lines& lines : {Lines{"tables of bricks", volumes.table.size()},
                                {"density", volumes.density_scale.size() * kGlBrickWords},
                                {"corners of volumes", volumes.corner.size()},
-                               {"light of nodes", most_coefficients(volumes)}}) {
+                               {"light of volumes", count_coefficients(volumes)}}) {
         const opaline_status status = check_lines(gl_, lines.name, lines.texels);
         if (status != OPALINE_OK) return status;
     }
@@ -58,13 +58,17 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
     block_ = names.make_buffer(
         records_.size() * (sizeof(ShaderVolume) + sizeof(std::array<float, 4>)) + kMaxSuns * 16,
         GL_DYNAMIC_DRAW);
-    upload(relight_volumes(
+    return upload(relight_volumes(
         volumes, {}, {.terms = formats::TermSet::none, .emitters = dark_emitters(), .threads = 1}));
-    return OPALINE_OK;
 }
 
-void VolumeTextures::upload(const VolumeLight& light) {
-    if (records_.empty()) return;
+opaline_status VolumeTextures::upload(const VolumeLight& light) {
+    if (records_.empty()) return OPALINE_OK;
+    if (const opaline_status status =
+            check_lines(gl_, "light of volumes", light.coefficient.size());
+        status != OPALINE_OK) {
+        return status;
+    }
     part_ = light.part;
     node_light_.fill_of(std::span(light.coefficient));
     std::array<std::array<float, 4>, kMaxSuns> suns{};
@@ -80,6 +84,7 @@ void VolumeTextures::upload(const VolumeLight& light) {
     }
     fill_buffer(gl_, block_, behind_records + sizeof suns, std::as_bytes(std::span(glow_colors)));
     fill_records();
+    return OPALINE_OK;
 }
 
 void VolumeTextures::look_from(formats::Vec3 eye) {

@@ -24,7 +24,7 @@ class VolumeTextures {
     opaline_status make(const formats::VolumesView& volumes, GlNames& names);
 
     /// Precondition: `light` is of these volumes.
-    void upload(const VolumeLight& light);
+    opaline_status upload(const VolumeLight& light);
     /// [m, world]
     void look_from(formats::Vec3 eye);
 

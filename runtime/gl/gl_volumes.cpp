@@ -33,7 +33,7 @@ SparseRows copy_rows(const formats::SparseRowsView& view) {
 }
 
 std::size_t coefficient_bytes(const VolumesView& volumes) {
-    return most_coefficients(volumes) * sizeof(formats::Rgb);
+    return count_coefficients(volumes) * sizeof(formats::Rgb);
 }
 
 formats::Status check_limits(const VolumesView& volumes, std::size_t max_block_bytes) {
@@ -52,7 +52,7 @@ formats::Status check_limits(const VolumesView& volumes, std::size_t max_block_b
         {{"tables of bricks", volumes.table.size_bytes()},
          {"density", volumes.density_scale.size() * kGlBrickWords * sizeof(std::uint32_t)},
          {"corners", volumes.corner.size_bytes()},
-         {"light of nodes", coefficient_bytes(volumes)}}};
+         {"light", coefficient_bytes(volumes)}}};
     for (const Block& block : blocks) {
         if (block.bytes > max_block_bytes) {
             return make_error(ErrorKind::resource, {}, "volumes",
@@ -77,6 +77,15 @@ formats::Status update_coefficients(GlVolumes& volumes, TermSet terms) {
         {.terms = volumes.lit_by.n == 0 ? TermSet::none : volumes.lit_terms,
          .emitters = volumes.lit_by.n == 0 ? dark_emitters()
                                            : EmitterLight{volumes.emitters, volumes.shows_own}});
+    const std::size_t bytes = volumes.light.coefficient.size() * sizeof(formats::Rgb);
+    if (bytes > volumes.max_block_bytes) {
+        return make_error(ErrorKind::resource, {}, "volumes",
+                          "their light takes " + std::to_string(bytes) + " bytes with " +
+                              std::to_string(volumes.light.sun.size()) +
+                              " suns, the OpenGL driver shows a shader at most " +
+                              std::to_string(volumes.max_block_bytes),
+                          "render on the CPU");
+    }
     std::size_t size = 0;
     volumes.coefficient =
         make_buffer_of(std::span<const formats::Rgb>(volumes.light.coefficient), size);
@@ -90,6 +99,7 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     GlVolumes gl;
     if (volumes.empty()) return gl;
     if (const auto status = check_limits(volumes, max_block_bytes); !status) return status.error();
+    gl.max_block_bytes = max_block_bytes;
     copy(volumes.records, gl.kept.records);
     copy(volumes.table, gl.kept.table);
     copy(volumes.density_scale, gl.kept.density_scale);

@@ -33,9 +33,10 @@ struct GlVolumes {
     GlBuffer glow;
     bool glows = false;  ///< whether there is any
     GlBuffer coefficient;
-    VolumeLight light;            ///< its coefficients are on the GPU
-    std::uint32_t harmonics = 1;  ///< the most terms of a node, suns left out
-    std::size_t resident = 0;     ///< [bytes], most coefficients included
+    VolumeLight light;                ///< its coefficients are on the GPU
+    std::uint32_t harmonics = 1;      ///< the most terms of a node, suns left out
+    std::size_t resident = 0;         ///< [bytes], coefficients under one sun included
+    std::size_t max_block_bytes = 0;  ///< that a shader may see of one buffer
 
     std::vector<formats::Rgb> emitters;  ///< their colours; empty: 1 each
     bool shows_own = true;
@@ -52,7 +53,8 @@ formats::Result<GlVolumes> upload_volumes(const formats::VolumesView& volumes,
 
 /// Computes the nodes' coefficients (relight_volumes) on the CPU and uploads them, `terms` of them;
 /// without a light the volumes only absorb. `emitters`: of the asset, or none. Does nothing where
-/// there are no volumes. Errors: resource. Precondition: light.n is the asset's cube map size, or
+/// there are no volumes. Errors: resource (memory; suns whose points take more than
+/// `max_block_bytes`). Precondition: light.n is the asset's cube map size, or
 /// 0.
 formats::Status relight_gl_volumes(GlVolumes& volumes, const LightVector& light,
                                    formats::TermSet terms, const EmitterLight& emitters = {});

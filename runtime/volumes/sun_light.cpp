@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -53,7 +54,7 @@ std::array<std::int32_t, 3> cell_of(const Field& field, std::uint32_t brick) {
 std::optional<Field> make_field(const formats::VolumesView& volumes,
                                 const formats::VolumeRecord& record, unsigned threads) {
     const auto lattice = make_lattice(volumes, record);
-    if (!lattice) return std::nullopt;
+    if (!lattice || lattice->table.empty() || record.brick_count == 0) return std::nullopt;
     Field field{*lattice, std::vector<std::uint32_t>(record.brick_count),
                 std::vector<PaddedBrick>(record.brick_count)};
     for (std::uint32_t at = 0; at < lattice->table.size(); ++at) {
@@ -199,7 +200,8 @@ void light_point(const SunPoints& points, std::uint32_t brick,
             find_sun_through(points.light.sun_phase[points.volume], record.albedo, share);
         const Rgb arrives = share * points.light.sun_light(points.volume, s);
         for (std::size_t j = 0; j < part.sun_terms; ++j) {
-            coefficient[j * part.suns + s] = through[j] * arrives;
+            coefficient[j * part.suns + s] =
+                tame(through[j] * arrives, std::numeric_limits<float>::max());
         }
     }
 }

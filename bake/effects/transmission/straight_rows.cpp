@@ -146,12 +146,18 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         }
     } else {
         std::vector<double> even(set.seen.size());
-        for (const StraightExit& exit : found.exits) {
-            even[exit.view] += static_cast<double>(
-                body.bands == 1 ? exit.weight[0]
-                                : exit.weight[0] + exit.weight[1] + exit.weight[2]);
+        const auto limit_with = [&](std::span<const StraightExit> exits) {
+            for (const StraightExit& exit : exits) {
+                even[exit.view] += static_cast<double>(
+                    body.bands == 1 ? exit.weight[0]
+                                    : exit.weight[0] + exit.weight[1] + exit.weight[2]);
+            }
+            limit_fit(set, terms, even, factors);
+        };
+        limit_with(found.exits);
+        if (sees_surfaces) {
+            limit_with(found.blocked);  // before surfaces as bright as the sky
         }
-        limit_fit(set, terms, even, factors);
     }
     Splat splat(row, terms, spread_cosine(views));
     const auto factors_of = [&](const StraightExit& exit) {

@@ -122,7 +122,12 @@ opaline.page = (() => {
   // Devices that are too slow draw fewer pixels while something moves.
   function tick(now) {
     requested = false;
-    if (!relight()) return;
+    try {
+      if (!relight()) return;
+    } catch (error) {
+      fail(error);
+      return;
+    }
     const isMoving = now - moved < kRest;
     if (isMoving && now - lastFrame > kSlowFrame && now - lastFrame < 1000) {
       coarseness = Math.min(coarseness * 2, 4);

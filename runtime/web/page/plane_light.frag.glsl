@@ -19,7 +19,9 @@ float plan_value(int i) { return texelFetch(plan, ivec2(i & 2047, i >> 11), 0).r
 
 // Counted without ghosts.
 vec3 cell_at(ivec2 across, int along) {
-    if (wraps != 0u) along -= cells_along * int(floor(float(along) / float(cells_along)));
+    if (wraps != 0u) {
+        along -= cells_along * ((along >= 0 ? along : along - cells_along + 1) / cells_along);
+    }
     if (along < -kGhosts || along >= cells_along + kGhosts) return vec3(0.0);
     return texelFetch(plane, across + (along + kGhosts) * axis, 0).rgb;
 }

@@ -92,6 +92,36 @@ TEST(FirstFlight, WhatStandsInABodyTakesOnlyTheLightThatReachesIt) {
     EXPECT_NEAR(look_down(slab.space).scattered[0], -std::expm1(-2.0), 1e-3);
 }
 
+// A floor far below an open body is none that stands in it: through the hole light is lost as
+// without.
+TEST(FirstFlight, WhatLiesFarBeyondAHoleTakesNoMoreThanNothing) {
+    const auto seen_above = [](bool has_floor) {
+        WalkedBody open;
+        Primitive body = make_wide_slab(1);
+        const std::vector<std::uint32_t> all = std::exchange(body.index, {});
+        for (std::size_t i = 0; i < all.size(); i += 3) {
+            const auto is_low = [&](std::size_t k) { return body.position[all[i + k]].y < -0.5f; };
+            if (is_low(0) && is_low(1) && is_low(2)) continue;  // the bottom is open
+            body.index.insert(body.index.end(), {all[i], all[i + 1], all[i + 2]});
+        }
+        std::vector<Primitive> parts{std::move(body)};
+        if (has_floor) {
+            parts.push_back(make_wide_slab(1));
+            parts.back().material = 1;
+            for (glm::vec3& p : parts.back().position) {
+                p.y -= 300;
+            }
+        }
+        open.scene = make_translucent_scene(std::move(parts), make_forward_medium(1, 0.9f, 0, 1));
+        open.triangles.emplace(bake::EmbreeScene::build(open.scene, 1).value());
+        open.space = bake::make_walk_space(open.scene, *open.triangles, 0, true);
+        return look_down(open.space);
+    };
+    const Straight without = seen_above(false), with = seen_above(true);
+    EXPECT_NEAR(with.scattered[0], without.scattered[0], 1e-5);
+    EXPECT_NEAR(with.depth, without.depth, 1e-5);
+}
+
 // Through a hole flights go on to the box; what is left there the others make up for.
 TEST(FirstFlight, HoleOfABallLosesNoLight) {
     Primitive ball = make_sphere(3);

@@ -78,6 +78,22 @@ TEST(SunPoints, BehindAnotherVolumeReceiveWhatBothLeave) {
     }
 }
 
+// A file may say so; with a sun every volume's density is asked for.
+TEST(SunPoints, AVolumeOfBricksWithoutCellsHoldsNothing) {
+    LitTestVolumes lit({even_body({0.05f, 0.05f, 0.05f}, 4), even_body({0.1f, 0.1f, 0.1f}, 8)},
+                       texel_sun());
+    const LitTestVolumes alone({even_body({0.05f, 0.05f, 0.05f}, 4)}, texel_sun());
+    std::vector<formats::VolumeRecord> records(lit.view.records.begin(), lit.view.records.end());
+    records[1].extent[0] = 0;
+    lit.view.records = records;
+    const VolumeLight light = relight_volumes(lit.view, texel_sun());
+    const std::uint32_t brick = lit.view.table[records[0].first_cell + 13];
+    for (std::size_t point = 0; point < 125; ++point) {
+        EXPECT_EQ(light.sun_coefficients(0, brick, point)[0],
+                  alone.light.sun_coefficients(0, brick, point)[0]);
+    }
+}
+
 // Else a seam is seen where bricks meet.
 TEST(SunPoints, OnFacesBetweenBricksAreTheSameInBoth) {
     TestVolume volume = even_body({0.1f, 0.1f, 0.1f}, 4);

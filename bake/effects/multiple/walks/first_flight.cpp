@@ -35,10 +35,14 @@ class FlightTracer {
                 return mean(left);
             }
             const WalkHit hit = *next;
-            scatter_along(position, direction, glm::distance(hit.position, position), view, left);
+            const float way = glm::distance(hit.position, position);
             if (!hit.is_own) {
-                return 0;
+                // What stands in the body, or, through a hole, far from it.
+                const float box = to_box(position, direction);
+                scatter_along(position, direction, std::min(way, box), view, left);
+                return way > box ? mean(left) : 0;
             }
+            scatter_along(position, direction, way, view, left);
             const float side = glm::dot(direction, hit.flat) > 0 ? 1.0f : -1.0f;
             shells -= static_cast<int>(side);
             if (shells > 0) {
