@@ -133,7 +133,9 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         return 0;
     }
     std::uint64_t rays = 0;
-    const auto [set, found] = follow_views(body, point, views, seed, rays);
+    const PointViews own = follow_views(body, point, views, seed, rays);
+    const auto& set = own.set;
+    const auto& found = own.found;
     const bool sees_surfaces = surfaces != nullptr && surfaces->add_seen && !found.blocked.empty();
     if (found.exits.empty() && !sees_surfaces) {
         return rays;
