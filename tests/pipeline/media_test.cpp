@@ -73,14 +73,6 @@ std::vector<std::string> effects_of_ball(const std::vector<PlanEntry>& plan) {
     return on;
 }
 
-double mean_green(const std::vector<Rgb>& radiance) {
-    double sum = 0;
-    for (const Rgb c : radiance) {
-        sum += static_cast<double>(c.g) / static_cast<double>(radiance.size());
-    }
-    return sum;
-}
-
 using Names = std::vector<std::string>;
 
 TEST(TranslucentPipeline, BytesDoNotDependOnTheNumberOfThreads) {
@@ -105,8 +97,9 @@ TEST(TranslucentPipeline, EachEffectAloneIsSimulatedAlone) {
         EXPECT_EQ(ball.bands, glossy ? 1u : 3u) << effect << ": rows of nothing have no colour";
         EXPECT_EQ(result.asset.openness.empty(), !glossy) << effect;
         // Without its light, gloss is black; the floor is left out in all three.
-        EXPECT_EQ(mean_green(relight_primitive(result.asset, "white")) > 0, !glossy) << effect;
-        EXPECT_EQ(mean_green(relight_primitive(result.asset, "white", 1)), 0) << effect;
+        EXPECT_EQ(tests::mean_green(relight_primitive(result.asset, "white")) > 0, !glossy)
+            << effect;
+        EXPECT_EQ(tests::mean_green(relight_primitive(result.asset, "white", 1)), 0) << effect;
     }
 }
 
@@ -151,8 +144,8 @@ TEST(TranslucentPipeline, MultipleAndSingleBakedApartAddUpToBoth) {
             };
             std::vector<Rgb> sum = part(formats::TermSet::multiple);
             const std::vector<Rgb> single = part(formats::TermSet::single);
-            EXPECT_GT(mean_green(sum), 0) << light;
-            EXPECT_GT(mean_green(single), 0) << light;
+            EXPECT_GT(tests::mean_green(sum), 0) << light;
+            EXPECT_GT(tests::mean_green(single), 0) << light;
             for (std::size_t v = 0; v < sum.size(); ++v) {
                 sum[v] = sum[v] + single[v];
             }

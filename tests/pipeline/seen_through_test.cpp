@@ -40,29 +40,21 @@ std::vector<formats::Rgb> shown_by(const formats::Scene& scene, std::vector<std:
                                     "white", primitive);
 }
 
-double mean_of_green(const std::vector<formats::Rgb>& radiance) {
-    double sum = 0;
-    for (const formats::Rgb& c : radiance) {
-        sum += double{c.g} / static_cast<double>(radiance.size());
-    }
-    return sum;
-}
-
 // All paths end in a sky of radiance 1. Along its normals the ball mirrors 4 %, which is no part of
 // rows.
 TEST(SeenThrough, AClearBallOverAWhiteFloorInAFurnaceShowsOneAndSoDoesTheFloor) {
     const BakeResult baked = tests::bake_scene(ball_above_floor(1e-6f, 1), tests::only(kThrough));
     const auto ball = tests::relight_primitive(baked.asset, "white", 0),
                floor = tests::relight_primitive(baked.asset, "white", 1);
-    EXPECT_NEAR(mean_of_green(ball), 0.96, 0.01);
-    EXPECT_NEAR(mean_of_green(floor), 1, 0.01);
+    EXPECT_NEAR(tests::mean_green(ball), 0.96, 0.01);
+    EXPECT_NEAR(tests::mean_green(floor), 1, 0.01);
     for (const formats::Rgb& c : ball) {
         EXPECT_NEAR(c.g, 0.96, 0.08);
     }
     for (const formats::Rgb& c : floor) {
         EXPECT_NEAR(c.g, 1, 0.08);
     }
-    EXPECT_LT(mean_of_green(shown_by(ball_above_floor(1e-6f, 1), kStraight, 0)), 0.8)
+    EXPECT_LT(tests::mean_green(shown_by(ball_above_floor(1e-6f, 1), kStraight, 0)), 0.8)
         << "what stands behind is black";
 }
 
@@ -75,7 +67,8 @@ TEST(SeenThrough, AMatchedClearBlockShowsTheFloorBehindItAndTheFloorTheSkyBehind
     }
     const formats::Scene scene = above_floor(block, tests::make_grey_medium(0, 1e-6f, 1), kAlbedo);
     const BakeResult baked = tests::bake_scene(scene, tests::only(kThrough));
-    EXPECT_NEAR(mean_of_green(tests::relight_primitive(baked.asset, "white", 1)), kAlbedo, 0.01);
+    EXPECT_NEAR(tests::mean_green(tests::relight_primitive(baked.asset, "white", 1)), kAlbedo,
+                0.01);
     const auto of_block = tests::relight_primitive(baked.asset, "white", 0);
     double from_above = 0, count = 0;
     for (std::size_t v = 0; v < of_block.size(); ++v) {
@@ -146,8 +139,8 @@ TEST(SeenThrough, AddsLessThanTheBoundsOfBothEffectsAndSomething) {
                          both = tests::bake_scene(scene, tests::only(kThrough));
         const double bound = std::min(find_entry(both.plan, "transmission", 0)->bound,
                                       find_entry(both.plan, "interreflection", 0)->bound);
-        const double added = mean_of_green(tests::relight_primitive(both.asset, "white")) -
-                             mean_of_green(tests::relight_primitive(straight.asset, "white"));
+        const double added = tests::mean_green(tests::relight_primitive(both.asset, "white")) -
+                             tests::mean_green(tests::relight_primitive(straight.asset, "white"));
         EXPECT_GT(added, 0.05 * bound) << sigma_a;
         EXPECT_LT(added, bound) << sigma_a;
     }
@@ -165,7 +158,7 @@ TEST(SeenThrough, OfABodyTooDenseForItAddsLessThanTheBoundByWhichItIsLeftOut) {
     ASSERT_TRUE(find_entry(forced.plan, "transmission", 0)->forced);
     const auto a = tests::relight_primitive(chosen.asset, "white"),
                b = tests::relight_primitive(forced.asset, "white");
-    EXPECT_LE(std::abs(mean_of_green(b) - mean_of_green(a)), entry.bound);
+    EXPECT_LE(std::abs(tests::mean_green(b) - tests::mean_green(a)), entry.bound);
 }
 
 TEST(SeenThrough, HasTheSameBitsForAnyNumberOfThreads) {

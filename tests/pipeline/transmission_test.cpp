@@ -19,14 +19,6 @@ const PlanEntry& entry_of(const BakeResult& baked, const char* name) {
     return *find_entry(baked.plan, name, 0);
 }
 
-double mean_green(const std::vector<formats::Rgb>& radiance) {
-    double sum = 0;
-    for (const formats::Rgb& c : radiance) {
-        sum += double{c.g} / static_cast<double>(radiance.size());
-    }
-    return sum;
-}
-
 // 1 less what the boundary mirrors along the normal.
 TEST(Transmission, AClearBallIsBakedByItAloneAndShowsAFurnaceAsItIs) {
     const BakeResult baked = tests::bake_scene(clear_ball(0, 1e-6f, 1.5f), tests::small_bake());
@@ -37,7 +29,7 @@ TEST(Transmission, AClearBallIsBakedByItAloneAndShowsAFurnaceAsItIs) {
     for (const formats::Rgb& c : tests::relight(baked.asset.view(), "white")) {
         ASSERT_NEAR(c.g, 0.96, 0.02);
     }
-    EXPECT_NEAR(mean_green(tests::relight(baked.asset.view(), "white")), 0.96, 0.003);
+    EXPECT_NEAR(tests::mean_green(tests::relight(baked.asset.view(), "white")), 0.96, 0.003);
 }
 
 TEST(Transmission, OfABodyThatIsTooDenseIsLessThanItsBoundAndOfAClearerOneMoreThanTheThreshold) {

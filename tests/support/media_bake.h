@@ -38,6 +38,14 @@ inline Scene make_ball_on_floor(const formats::Medium& medium) {
     return make_translucent_scene({make_sphere(2), floor}, medium);
 }
 
+inline double mean_green(const std::vector<formats::Rgb>& radiance) {
+    double sum = 0;
+    for (const formats::Rgb& c : radiance) {
+        sum += double{c.g} / static_cast<double>(radiance.size());
+    }
+    return sum;
+}
+
 /// Radiance of the vertices of one primitive, each seen along its normal.
 inline std::vector<formats::Rgb> relight_primitive(const formats::Asset& asset, const char* light,
                                                    std::size_t primitive = 0,
