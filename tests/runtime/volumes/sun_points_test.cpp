@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "formats/opal/cubemap.h"
 #include "runtime/volumes/volume_lattice.h"
@@ -75,6 +76,21 @@ TEST(SunPoints, BehindAnotherVolumeReceiveWhatBothLeave) {
     for (std::size_t point = 0; point < 125; ++point) {
         const float alone = share_at(one, 0, point).g, both = share_at(two, 0, point).g;
         EXPECT_NEAR(both, alone * alone * alone, 0.01) << point;
+    }
+}
+
+// Surfaces stand before the sun: the density does not know, rows do.
+TEST(SunPoints, InTheShadowOfSurfacesReceiveNoMoreThanTwiceWhatRowsSay) {
+    for (const float reach : {0.0f, 0.1f}) {
+        TestVolume volume = even_body({0.01f, 0.01f, 0.01f}, 4);
+        volume.rows = [reach](formats::NodeVoxel) {
+            return std::vector<formats::SparseRow>{test::constant_row(test::kSize, reach)};
+        };
+        const LitTestVolumes lit({volume}, texel_sun());
+        ASSERT_EQ(lit.view.records[0].bands, 1u);
+        for (std::size_t point = 0; point < 125; ++point) {
+            EXPECT_NEAR(share_at(lit, 0, point).g, 2 * reach, 0.01f) << reach;  // of some .85
+        }
     }
 }
 
