@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/gl/gl_handle.h"
+#include "runtime/gl/gl_objects.h"
 
 namespace opaline::runtime {
 namespace {
@@ -138,7 +138,8 @@ formats::Result<EglContext> EglContext::create() {
     eglBindAPI(previous_api);
     return make_error(ErrorKind::resource, {}, "EGL", "no usable display (" + tried + ")",
                       "install a driver with OpenGL 4.5, such as Mesa's libegl1 and "
-                      "libgl1-mesa-dri, or render on the CPU");
+                      "libgl1-mesa-dri, or " +
+                          std::string(kRenderOnCpu));
 }
 
 void* EglContext::load_function(const char* name) {

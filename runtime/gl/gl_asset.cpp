@@ -41,7 +41,7 @@ formats::Status upload_images(const AssetView& asset, GlAsset& gl) {
                 formats::ErrorKind::resource, {}, "image " + std::to_string(i),
                 "found " + std::to_string(image.width) + "x" + std::to_string(image.height) +
                     " pixels, the OpenGL driver takes at most " + std::to_string(limit),
-                "render on the CPU, or bake with a smaller texture");
+                std::string(kRenderOnCpu) + ", or bake with a smaller texture");
         }
         gl.images.push_back(upload_image(image, gl.resident));
     }

@@ -151,7 +151,7 @@ formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t 
             GL_FRAMEBUFFER_COMPLETE) {
             return formats::make_error(formats::ErrorKind::resource, {}, "OpenGL",
                                        "the driver cannot render to 32-bit float textures",
-                                       "render on the CPU");
+                                       kRenderOnCpu);
         }
     }
     return target;

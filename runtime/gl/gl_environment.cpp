@@ -47,7 +47,7 @@ formats::Status upload_map(const Environment& environment, GlEnvironment& gl) {
         return make_error(ErrorKind::resource, {}, "environment",
                           "found " + std::to_string(width) + "x" + std::to_string(height) +
                               " pixels, the OpenGL driver takes at most " + std::to_string(limit),
-                          "render on the CPU, or use a smaller map");
+                          std::string(kRenderOnCpu) + ", or use a smaller map");
     }
     gl.texture = upload_layers(environment, width, height, layers, gl.resident);
     gl.map = is_cube ? GlEnvironment::Map::cube : GlEnvironment::Map::lat_long;

@@ -43,7 +43,7 @@ GlTexture upload_pyramid(std::span<const MipLevel<Rgb>> levels, std::size_t& res
 formats::Status check_sizes(const LayerLight& light) {
     const auto refuse = [](std::string found) -> formats::Status {
         return make_error(ErrorKind::resource, {}, "cloud layer", "found " + std::move(found),
-                          "render on the CPU");
+                          kRenderOnCpu);
     };
     GLint side = 0;
     GLint64 block = 0;

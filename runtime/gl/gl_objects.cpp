@@ -37,7 +37,7 @@ formats::Result<GlShader> compile(const std::string& name, const std::string& de
         return make_error(
             ErrorKind::resource, {}, "OpenGL shader '" + name + "'",
             "the driver refuses it: " + info_log(shader.name(), glGetShaderiv, glGetShaderInfoLog),
-            "update the driver, or render on the CPU");
+            std::string("update the driver, or ") + kRenderOnCpu);
     }
     return shader;
 }
@@ -58,7 +58,7 @@ formats::Status check_gl(const std::string& doing) {
     const auto* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
     return make_error(ErrorKind::resource, {},
                       std::string("OpenGL on ") + (renderer != nullptr ? renderer : "lost device"),
-                      errors + " while " + doing, "render on the CPU");
+                      errors + " while " + doing, kRenderOnCpu);
 }
 
 GlBuffer make_buffer(std::span<const std::byte> bytes, std::size_t& resident) {
@@ -95,7 +95,7 @@ formats::Result<GlProgram> make_program(const std::string& name, const std::stri
         return make_error(ErrorKind::resource, {}, "OpenGL program '" + name + "'",
                           "the driver cannot link it: " +
                               info_log(program.name(), glGetProgramiv, glGetProgramInfoLog),
-                          "update the driver, or render on the CPU");
+                          std::string("update the driver, or ") + kRenderOnCpu);
     }
     for (const GlShader& shader : shaders) {
         glDetachShader(program.name(), shader.name());

@@ -5,6 +5,7 @@
 
 #include "runtime/embed_gl/saved_state.h"
 #include "runtime/gl/egl_context.h"
+#include "runtime/gl/gl_objects.h"
 
 namespace opaline::runtime {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 formats::Status as_status(opaline_status status) {
     if (status == OPALINE_OK) return formats::ok_status();
     return formats::make_error(formats::ErrorKind::resource, {}, "OpenGL", opaline_last_error(),
-                               "render on the CPU");
+                               kRenderOnCpu);
 }
 
 formats::Status check_lights(const PartLights& lights, const Relight& asset) {

@@ -37,7 +37,7 @@ std::size_t coefficient_bytes(const VolumesView& volumes) {
 }
 
 formats::Status check_limits(const VolumesView& volumes, std::size_t max_block_bytes) {
-    const std::string remedy = "render on the CPU";
+    const std::string remedy = kRenderOnCpu;
     if (volumes.records.size() > kMaxGlVolumes) {
         return make_error(ErrorKind::resource, {}, "volumes",
                           "found " + std::to_string(volumes.records.size()) +
@@ -84,7 +84,7 @@ formats::Status update_coefficients(GlVolumes& volumes, TermSet terms) {
                               std::to_string(volumes.light.sun.size()) +
                               " suns, the OpenGL driver shows a shader at most " +
                               std::to_string(volumes.max_block_bytes),
-                          "render on the CPU");
+                          kRenderOnCpu);
     }
     std::size_t size = 0;
     volumes.coefficient =
@@ -115,7 +115,7 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
         return make_error(ErrorKind::resource, {}, "volumes",
                           "their own light takes more than the " + std::to_string(max_block_bytes) +
                               " bytes that the OpenGL driver shows a shader",
-                          "render on the CPU");
+                          kRenderOnCpu);
     }
     gl.glows = !glow_words.empty();
     if (gl.glows) {

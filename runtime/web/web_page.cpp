@@ -7,6 +7,8 @@
 #include "page_text.h"
 #include "runtime/clouds/layer_light.h"
 #include "runtime/gloss.h"
+#include "runtime/picture/layer_pass.h"
+#include "runtime/picture/volume_pass.h"
 #include "runtime/specular.h"
 #include "runtime/web/data_script.h"
 #include "runtime/web/page_asset.h"
@@ -56,6 +58,8 @@ std::string make_shader_script() {
     constant("ALBEDO_COLUMNS", std::to_string(formats::kAlbedoColumns));
     constant("NARROW_ROUGHNESS", "\"" + std::to_string(kNarrowRoughness) + "\"");
     constant("WIDE_ROUGHNESS", "\"" + std::to_string(kWideRoughness) + "\"");
+    constant("CORNER_TOLERANCE", std::to_string(kCornerTolerance));
+    constant("SHEET_TOLERANCE", "\"" + std::to_string(kSheetTolerance) + "\"");
     constant("roughnessSteps", std::to_string(kRoughnessSteps));
     return script + "};\n";
 }

@@ -4,11 +4,6 @@
 flat layout(location = 6) in uint v_last_vertex;
 layout(location = 21) uniform vec3 hole;  // alpha, cutoff, 1: a mask, 2: a blend
 layout(location = 22) uniform uvec2 first_sample;  // of the tile
-#ifdef SPREAD_SAMPLES
-uniform uint sample_step;  // between neighbouring texels of the target
-#else
-const uint sample_step = 1u;
-#endif
 #ifdef HOLE_VERTICES
 layout(location = 7) in float v_alpha;
 #endif
@@ -25,5 +20,5 @@ bool sees_surface(vec2 texcoord) {
 #ifdef HOLE_IMAGE
     alpha *= sample_image(hole_image, texcoord, hole_wrap, false).r;
 #endif
-    return covers(alpha, hole.yz, first_sample + sample_step * uvec2(gl_FragCoord.xy), v_last_vertex);
+    return covers(alpha, hole.yz, first_sample + uvec2(gl_FragCoord.xy), v_last_vertex);
 }

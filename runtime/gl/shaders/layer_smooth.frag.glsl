@@ -43,7 +43,11 @@ void main() {
     bool is_smooth = !any(greaterThan(high - low, tolerance * high));
     for (int i = 0; i < supersampling * supersampling; ++i) {
         ivec2 at = pixel * supersampling + ivec2(i % supersampling, i / supersampling);
+#ifdef FORWARD_DEPTH
+        is_smooth = is_smooth && !(texelFetch(depth, at, 0).r < 1.0);
+#else
         is_smooth = is_smooth && !(texelFetch(depth, at, 0).r > 0.0);
+#endif
     }
     vec2 plane = (tile_origin + gl_FragCoord.xy * float(supersampling)) * to_plane - 1.0;
     vec3 direction = normalize(plane.x * right + plane.y * down + forward);

@@ -5,10 +5,11 @@ const Gl = (() => {
   // Texture units; those of volumes are shared with surfaces, which bind theirs anew.
   const kUnits = { products: 0, base_color_image: 1, mirrored_light: 2, light_maps: 3, gloss_image: 4,
                    own_image: 5, hole_image: 6, srgb_table: 7, cells: 8, sun_table: 9, albedo: 10,
-                   map: 11, disc_table: 12, sampled: 13, normal_image: 13, sum: 14, samples: 0, depth: 1,
+                   map: 11, disc_table: 12, normal_image: 13, picture: 14, samples: 0, depth: 1,
                    brick_numbers: 2, density_codes: 3, corner_numbers: 4, node_light: 5,
                    phase_entries: 6, table_values: 2, sun_values: 3, thickness_values: 4, albedo_map: 5,
                    ground_light: 6, base_light: 7, sheet_light: 7, sheet_through: 8,
+                   corners: 8, corner_light: 9, corner_through: 10, means: 8, mean_light: 9, mean_through: 10,
                    glow_words: 9, tree_cells: 0, plane: 0, plan: 1, before: 2, shining: 3, reflecting: 4 };
 
   // GLSL ES 3.00 has no explicit places of what passes between stages, nor of uniforms.

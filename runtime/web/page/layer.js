@@ -101,6 +101,15 @@ const Layer = (() => {
     return record;
   }
 
+  // Direction of each of a record's suns, and the chord within which it may matter to a pixel of that spread [rad].
+  function nearSuns(record, spread) {
+    const floats = new Float32Array(record.buffer), list = new Float32Array(8);  // a chord of 0 is never reached
+    for (let i = 0, at = kSuns; i < record[kSunCount]; ++i, at += kSunSize) {
+      list.set([...floats.subarray(at, at + 3), 1.1 * floats[at + 7] + 2 * spread], 4 * i);
+    }
+    return list;
+  }
+
   // Of the first corner of the grid that Radiosity cuts ground and base into, at a time.
   function cornerAt(layer, light, time) {
     const [lowX, lowZ] = light.places.subarray(8, 10);
@@ -180,6 +189,6 @@ const Layer = (() => {
     return [point[0], Math.max(point[1], ground + 1e-4 * (base - ground)), point[2]];
   }
 
-  return { read, readLight, thicknessAt, spanOf, isStill, turned, cornerAt, openGround, sunsBelow, defines, block, bodiesAt,
+  return { read, readLight, thicknessAt, spanOf, isStill, turned, nearSuns, cornerAt, openGround, sunsBelow, defines, block, bodiesAt,
            eyeAboveGround };
 })();

@@ -1,15 +1,15 @@
 "use strict";
-// The page: what the viewer asks for, and drawing it: one sample of each pixel at once, the others
-// frame by frame while nothing changes.
+// The page: what the viewer asks for, and drawing it: at first one sample of each pixel, then all samples, a tile a
+// frame, while nothing changes.
 opaline.page = (() => {
   const kAcross = 3;  // samples a side of a pixel, as `opaline render` has
-  const kOrder = [[1, 1], [0, 0], [2, 2], [2, 0], [0, 2], [1, 0], [1, 2], [0, 1], [2, 1]];
+  const kTiles = [[1, 1], [0, 0], [2, 2], [2, 0], [0, 2], [1, 0], [1, 2], [0, 1], [2, 1]];  // the middle first
   const kSlowFrame = 60, kRest = 250;  // [ms]
   const at = id => document.getElementById(id);
   const canvas = at("canvas");
   const lights = new Map();  // by number, as read
   let asset, draw, state, home;
-  let drawn = 0;             // samples of the current picture
+  let drawn = 0;             // of the current picture: a sample of all pixels, then tiles
   let shown = { light: -1, turn: NaN, time: NaN, colors: null }, projected = null;
   let requested = false, moved = 0, lastFrame = 0, coarseness = 1;
 
@@ -111,12 +111,19 @@ opaline.page = (() => {
     return true;
   }
 
-  function drawNext(width, height) {
-    draw.resize(width, height);
+  // Step 0: one sample of each pixel; then tiles, each with as many samples as that.
+  function drawStep(step, width, height) {
+    const tileWidth = Math.ceil(width / kAcross), tileHeight = Math.ceil(height / kAcross);
+    draw.resize(width, height, tileWidth, tileHeight, kAcross);
     const frame = Camera.frame(state.view, asset.camera, width / height);
-    const seen = { turn: state.turn * Math.PI / 180, exposure: state.exposure, colors: state.colors };
-    draw.drawSample(frame, seen, kOrder[drawn], kAcross, drawn === 0);
-    drawn += 1;
+    const seen = { turn: state.turn * Math.PI / 180, colors: state.colors };
+    if (step === 0) {
+      draw.drawTile(frame, seen, Draw.whole(width, height));
+      return;
+    }
+    const [column, row] = kTiles[step - 1], x = column * tileWidth, y = row * tileHeight;
+    const tile = { x, y, width: Math.min(tileWidth, width - x), height: Math.min(tileHeight, height - y), across: kAcross };
+    if (tile.width > 0 && tile.height > 0) draw.drawTile(frame, seen, tile);
   }
 
   // Devices that are too slow draw fewer pixels while something moves.
@@ -146,19 +153,18 @@ opaline.page = (() => {
       coarseness = 1;
       drawn = 0;
     }
-    if (drawn < kOrder.length) drawNext(Math.ceil(width / coarse), Math.ceil(height / coarse));
-    draw.present(drawn);
+    if (drawn <= kTiles.length) drawStep(drawn++, Math.ceil(width / coarse), Math.ceil(height / coarse));
+    draw.present(state.exposure);
     say("");
-    if (drawn < kOrder.length || coarse > 1) request();
+    if (drawn <= kTiles.length || coarse > 1) request();
   }
 
   // All samples of a picture of that size, as the address or the viewer has it.
   async function takePicture(width, height) {
     await lightOf(state.light);
     relight();
-    drawn = 0;
-    while (drawn < kOrder.length) drawNext(width, height);
-    const pixels = draw.readPixels(drawn);
+    for (let step = 1; step <= kTiles.length; ++step) drawStep(step, width, height);
+    const pixels = draw.readPixels(state.exposure);
     drawn = 0;
     request();
     return { width, height, pixels };

@@ -1,9 +1,9 @@
-// From the sum of samples to the screen: mean, Khronos PBR Neutral, sRGB, as
-// runtime/picture/tone_map.cpp. Row 0 of the sum is the top of the picture.
-uniform sampler2D sum;
-uniform float share;  // 1 / number of samples
-uniform vec2 scale;   // texels of the sum a pixel
-uniform int rows;     // of the target; 0: it is not turned over
+// From radiance to the screen: exposure, Khronos PBR Neutral, sRGB, as runtime/picture/tone_map.cpp. Row 0 of the
+// picture is its top.
+uniform sampler2D picture;
+uniform float gain;
+uniform vec2 scale;  // texels of the picture a pixel of the target
+uniform int rows;    // of the target; 0: it is not turned over
 layout(location = 0) out vec4 color;
 
 vec3 tone_map(vec3 c) {
@@ -23,6 +23,6 @@ float encode(float linear) {
 void main() {
     vec2 at = gl_FragCoord.xy;
     if (rows > 0) at.y = float(rows) - at.y;
-    vec3 c = tone_map(share * texelFetch(sum, ivec2(at * scale), 0).rgb);
+    vec3 c = tone_map(min(gain * texelFetch(picture, ivec2(at * scale), 0).rgb, vec3(1e30)));
     color = vec4(encode(c.r), encode(c.g), encode(c.b), 1.0);
 }
