@@ -75,10 +75,12 @@ LayerRay layer_ray(vec2 at, out float cosine) {
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     bool at_corner = sees_corners != 0;
-    float cosine, inverse = at_corner ? 0.0 : texelFetch(depth, here, 0).r;
 #ifdef FORWARD_DEPTH
-    inverse = 1.0 - inverse;
+    float inverse = at_corner ? 0.0 : 1.0 - texelFetch(depth, here, 0).r;
+#else
+    float inverse = at_corner ? 0.0 : texelFetch(depth, here, 0).r;
 #endif
+    float cosine;
     LayerRay ray = layer_ray(at_corner ? vec2(here * supersampling) : gl_FragCoord.xy, cosine);
     vec3 surface = vec3(0.0);
     if (inverse > 0.0) {

@@ -150,11 +150,11 @@ const Draw = (() => {
     // of a branch.
     function drawLayer(frame, turn, grid, tile) {
       gl.bindFramebuffer(gl.FRAMEBUFFER, targets.clouded.frame);
-      gl.clearBufferfv(gl.DEPTH, 0, [0.5]);  // where screen.vert.glsl draws
+      gl.clearBufferfv(gl.DEPTH, 0, [0]);  // screen.vert.glsl draws at 0.5
       gl.enable(gl.DEPTH_TEST);
       gl.depthFunc(gl.ALWAYS);
       if (tile.across > 1) drawSmooth(frame, turn, grid, tile);
-      gl.depthFunc(gl.EQUAL);
+      gl.depthFunc(gl.GREATER);
       gl.depthMask(false);
       viewSamples(grid);
       seeLayer(frame, turn, grid, tile.across, false);

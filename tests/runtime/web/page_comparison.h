@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,12 @@ runtime::DisplayPicture render_on_cpu(const formats::AssetView& view,
                                       const formats::Environment& sky,
                                       const runtime::Camera& camera, const PageView& wanted);
 
-/// Within 2/255; where a sample lies beside an edge for one of the two, within its neighbours'
-/// range.
-void expect_same_pixels(const runtime::DisplayPicture& cpu, const std::vector<std::uint8_t>& page);
+/// The page's pixels and those that `render` has for the camera are the same within 2/255. Vertices
+/// snap to the grid of the browser's graphics, 1/16 sample, which moves samples beside edges
+/// across: pixels that change by more than 1/255 when the camera turns by one step of that grid lie
+/// within 2/255 of the range of these pictures, but for one in 1000.
+void expect_same_pixels(
+    const std::function<runtime::DisplayPicture(const runtime::Camera&)>& render,
+    const runtime::Camera& camera, const std::vector<std::uint8_t>& page);
 
 }  // namespace opaline::test

@@ -76,7 +76,11 @@ TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
     const auto shown =
         test::take_page_picture(*page, "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2", 80, 60);
     EXPECT_EQ(shown.console, "");
-    expect_same_pixels(render_on_cpu(asset.view(), sky, camera, {{}, 20, -2}), shown.rgba);
+    expect_same_pixels(
+        [&](const Camera& moved) {
+            return render_on_cpu(asset.view(), sky, moved, {{}, 20, -2});
+        },
+        camera, shown.rgba);
 }
 
 // Fire of one brick of eight in a volume that is dark elsewhere, beside dark smoke.
@@ -119,13 +123,13 @@ TEST(PagePicture, FireShinesAndLightsItsSmokeAsOnTheCpuInItsSlidersColour) {
                     {{1, 1, 1}, {0.5f, 1, 3}}};
     const auto shown = test::take_page_picture(*page, wanted.address, 64, 48);
     EXPECT_EQ(shown.console, "");
-    const auto cpu = [&] {
-        return render_on_cpu(asset.view(), lights[0].environment, camera, wanted);
+    const auto cpu = [&](const Camera& moved) {
+        return render_on_cpu(asset.view(), lights[0].environment, moved, wanted);
     };
-    const DisplayPicture lit = cpu();
-    expect_same_pixels(lit, shown.rgba);
+    expect_same_pixels(cpu, camera, shown.rgba);
+    const DisplayPicture lit = cpu(camera);
     wanted.emitters[1] = {};
-    const DisplayPicture dark = cpu();
+    const DisplayPicture dark = cpu(camera);
     int of_fire = 0;
     for (std::size_t i = 0; i < lit.rgba.size(); ++i) {
         of_fire = std::max(of_fire, lit.rgba[i] - dark.rgba[i]);
