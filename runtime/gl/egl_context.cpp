@@ -8,7 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/gl/gl_objects.h"
+#include "runtime/gl/gl_handle.h"
+#include "runtime/gl/render_on_cpu.h"
 
 namespace opaline::runtime {
 namespace {

@@ -7,13 +7,11 @@
 
 #include "formats/opal/result.h"
 #include "runtime/gl/gl_handle.h"
+#include "runtime/gl/render_on_cpu.h"
 
 namespace opaline::runtime {
 
-/// What errors of OpenGL advise.
-inline constexpr const char* kRenderOnCpu = "render on the CPU: `opaline render --backend cpu`";
-
-/// Everything else here needs a current OpenGL 4.5 context.
+/// Everything here needs a current OpenGL 4.5 context.
 
 /// ok, or resource naming the GL errors since the last check and what was being done.
 formats::Status check_gl(const std::string& doing);

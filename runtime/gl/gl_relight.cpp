@@ -5,7 +5,7 @@
 
 #include "runtime/embed_gl/saved_state.h"
 #include "runtime/gl/egl_context.h"
-#include "runtime/gl/gl_objects.h"
+#include "runtime/gl/render_on_cpu.h"
 
 namespace opaline::runtime {
 namespace {

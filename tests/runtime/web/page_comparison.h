@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -28,9 +29,11 @@ runtime::DisplayPicture render_on_cpu(const formats::AssetView& view,
 /// The page's pixels and those that `render` has for the camera are the same within 2/255. Vertices
 /// snap to the grid of the browser's graphics, 1/16 sample, which moves samples beside edges
 /// across: pixels that change by more than 1/255 when the camera turns by one step of that grid lie
-/// within 2/255 of the range of these pictures, but for one in 1000.
+/// within 2/255 of the range of these pictures, but for one in 1000. `elsewhere`: how many others
+/// may lie beyond 2/255.
 void expect_same_pixels(
     const std::function<runtime::DisplayPicture(const runtime::Camera&)>& render,
-    const runtime::Camera& camera, const std::vector<std::uint8_t>& page);
+    const runtime::Camera& camera, const std::vector<std::uint8_t>& page,
+    std::size_t elsewhere = 0);
 
 }  // namespace opaline::test

@@ -214,7 +214,7 @@ TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderT
             [&](const Camera& moved) {
                 return render_cloudy_on_cpu(asset.view(), sky, moved, wanted, with_bodies ? 2 : 0);
             },
-            camera, shown.rgba);
+            camera, shown.rgba, with_bodies ? 1 : 0);
     }
 }
 
