@@ -1,7 +1,7 @@
 // Bounced light of the bake against an exact final gather, against path tracing, and its cost.
 //   opaline_interreflection_table gather SCENE RAYS: errors of 160 receivers against 16384 rays
 //     that read the nearest of as many scatterers as there are, whose light is found with 256 rays
-//     each.
+//     each; of each error, the part that rays of other seeds share.
 //   ... truth SCENE: a file of production against path tracing of all light.
 //   ... cost SCENE: seconds and rays of stages without and with interreflection.
 // SCENE: box (a room open to the front, with a block in it), detailed (the same, of checkers),
@@ -71,6 +71,26 @@ formats::Scene make_open_box(bool detailed, std::uint32_t n) {
                 p.color.push_back({a, a, a});
             }
         }
+    }
+    return scene;
+}
+
+// The same shapes of four times the triangles: receivers are denser, and so are the scatterers that
+// these see.
+formats::Scene split(formats::Scene scene) {
+    for (formats::Primitive& p : scene.primitives) {
+        std::vector<std::uint32_t> index;
+        const auto middle = [&](std::uint32_t a, std::uint32_t b) {
+            p.position.push_back(0.5f * (p.position[a] + p.position[b]));
+            p.normal.push_back(glm::normalize(p.normal[a] + p.normal[b]));
+            return static_cast<std::uint32_t>(p.position.size() - 1);
+        };
+        for (std::size_t t = 0; t < p.index.size(); t += 3) {
+            const std::uint32_t a = p.index[t], b = p.index[t + 1], c = p.index[t + 2];
+            const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+            index.insert(index.end(), {a, ab, ca, ab, b, bc, ca, bc, c, ab, bc, ca});
+        }
+        p.index = index;
     }
     return scene;
 }
@@ -164,9 +184,10 @@ Exact exact_light(const World& w, std::size_t count) {
     return e;
 }
 
-void compare(const World& w, std::uint32_t n) {
+// `fine`: the same shapes, whose scatterers the truth reads.
+void compare(const World& w, const World& fine, std::uint32_t n) {
     constexpr std::size_t kDense = 65536;
-    const Exact exact = exact_light(w, kDense);
+    const Exact exact = exact_light(fine, kDense);
     const DirectionSet d = make_direction_set(kMap);
     std::vector<std::vector<float>> lights;
     for (const char* l : {"white", "studio", "sky:3,35"}) {
@@ -194,45 +215,65 @@ void compare(const World& w, std::uint32_t n) {
         truth[i] = gather(*exact.tree, i, 16384, LookUp::nearest, 99);
         env[i] = env_row(w, d, at[i]);
     });
-    double bounced_norm = 0, all_norm = 0;
+    double all_norm = 0;
     for (std::size_t i = 0; i < wanted; ++i)
-        for (std::size_t k = 0; k < kTexels; ++k) {
-            bounced_norm += double(truth[i][k]) * truth[i][k];
+        for (std::size_t k = 0; k < kTexels; ++k)
             all_norm += std::pow(double(truth[i][k]) + env[i][k], 2);
-        }
     std::printf(
-        "%zu dense scatterers; errors of bounced light, and relative to all: rows, white, "
-        "studio, sky; mean\n",
+        "%zu dense scatterers; RMS errors of bounced light in percent of all light (of that, what "
+        "other seeds share): rows, white, studio, sky\n",
         exact.points.size());
+    // Error, and of that what rays of other seeds share: errors of the look-up and of scatterers.
+    constexpr std::uint64_t kSeeds = 8;
     const auto report = [&](const char* what, auto&& own) {
-        std::vector<Row> rows(wanted);
-        tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) { rows[i] = own(i); });
-        double err = 0;
-        double le[3]{}, lb[3]{}, la[3]{}, mean = 0, tm = 0;
+        std::vector<std::vector<Row>> rows(wanted, std::vector<Row>(kSeeds));
+        std::vector<std::uint64_t> traced(wanted);
+        tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) {
+            for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
+                rows[i][seed] = own(i, seed, traced[i]);
+        });
+        double err = 0, bias = 0, le[3]{}, lb[3]{}, la[3]{};
         for (std::size_t i = 0; i < wanted; ++i) {
+            const auto add = [&](auto&& of_seed, double& e, double& b) {
+                double sum = 0, squares = 0;
+                for (std::size_t s = 0; s < kSeeds; ++s) {
+                    const double off = of_seed(rows[i][s]);
+                    sum += off;
+                    squares += off * off;
+                }
+                e += squares / kSeeds;
+                // Without bias of its own: products of different seeds.
+                b += (sum * sum - squares) / (kSeeds * (kSeeds - 1));
+            };
             for (std::size_t k = 0; k < kTexels; ++k)
-                err += std::pow(double(rows[i][k]) - truth[i][k], 2);
+                add([&](const Row& r) { return double(r[k]) - truth[i][k]; }, err, bias);
             for (int l = 0; l < 3; ++l) {
-                double a = 0, t = 0, e = 0;
-                for (std::size_t k = 0; k < kTexels; ++k) {
-                    a += double(rows[i][k]) * lights[l][k];
-                    t += double(truth[i][k]) * lights[l][k];
-                    e += double(env[i][k]) * lights[l][k];
-                }
-                le[l] += (a - t) * (a - t);
-                lb[l] += t * t;
-                la[l] += (t + e) * (t + e);
-                if (l == 0) {
-                    mean += a - t;
-                    tm += t;
-                }
+                double all = 0;
+                for (std::size_t k = 0; k < kTexels; ++k)
+                    all += (double(truth[i][k]) + env[i][k]) * lights[l][k];
+                la[l] += all * all;
+                add(
+                    [&](const Row& r) {
+                        double off = 0;
+                        for (std::size_t k = 0; k < kTexels; ++k)
+                            off += (double(r[k]) - truth[i][k]) * lights[l][k];
+                        return off;
+                    },
+                    le[l], lb[l]);
             }
         }
-        std::printf("%-26s | %.4f %.4f %.4f %.4f | %.4f %.4f %.4f %.4f | %+.4f\n", what,
-                    std::sqrt(err / bounced_norm), std::sqrt(le[0] / lb[0]),
-                    std::sqrt(le[1] / lb[1]), std::sqrt(le[2] / lb[2]), std::sqrt(err / all_norm),
-                    std::sqrt(le[0] / la[0]), std::sqrt(le[1] / la[1]), std::sqrt(le[2] / la[2]),
-                    mean / tm);
+        std::uint64_t rays_of_all = 0;
+        for (const std::uint64_t r : traced)
+            rays_of_all += r;
+        const auto percent = [](double a, double b) {
+            return 100 * std::sqrt(std::max(0.0, a) / b);
+        };
+        std::printf("%-28s %6.1f rays | %.3f (%.3f)", what,
+                    double(rays_of_all) / double(wanted * kSeeds), percent(err, all_norm),
+                    percent(bias, all_norm));
+        for (int l = 0; l < 3; ++l)
+            std::printf(" | %.3f (%.3f)", percent(le[l], la[l]), percent(lb[l], la[l]));
+        std::printf("\n");
         std::fflush(stdout);
     };
     BakeOptions options;
@@ -241,58 +282,42 @@ void compare(const World& w, std::uint32_t n) {
     std::uint64_t rays = 0;
     const auto light = find_bounce_light(
         {w.bake, resolve_knobs(options).value(), w.context, w.layouts, {}, {}}, rays);
-    const auto with = [&](const BounceTree& tree, LookUp look_up) {
-        return
-            [&tree, &gather, n, look_up](std::size_t i) { return gather(tree, i, n, look_up, 0); };
-    };
-    report("nearest scatterer", with(light->tree, LookUp::nearest));
-    report("node", with(light->tree, LookUp::node));
-    report("kernel", with(light->tree, LookUp::kernel));
-    std::vector<HiddenNodes> nodes(wanted);
-    for (const bool only_seen : {false, true}) {
-        report(only_seen ? "kernel, seen nodes" : "kernel without tilt", [&](std::size_t i) {
+    const auto with = [&](const BounceTree& tree, LookUp look_up, const BounceGrid& grid) {
+        return [&, look_up](std::size_t i, std::uint64_t seed, std::uint64_t& traced) {
             std::vector<NodeWeight> weights;
-            nodes[i] = weigh_seen_nodes(w.scene, w.rays, light->tree, at[i], make_bounce_grid(n), 0,
-                                        only_seen, weights);
+            traced +=
+                weigh_bounces(w.scene, w.rays, tree, at[i], grid, seed, weights, look_up).rays;
             Row r(kTexels);
-            add_node_rows(light->tree, weights, r);
+            add_node_rows(tree, weights, r);
             return r;
-        });
+        };
+    };
+    const BounceGrid even = make_bounce_grid(n), cut = make_cut_grid(n);
+    report("nearest scatterer", with(light->tree, LookUp::nearest, even));
+    report("node", with(light->tree, LookUp::node, even));
+    report("footprint", with(light->tree, LookUp::kernel, even));
+    report("exact light, same rays", with(*exact.tree, LookUp::nearest, even));
+    for (const bool only_seen : {false, true}) {
+        report(only_seen ? "footprint, seen nodes" : "footprint without tilt",
+               [&](std::size_t i, std::uint64_t seed, std::uint64_t& traced) {
+                   std::vector<NodeWeight> weights;
+                   const HiddenNodes nodes = weigh_seen_nodes(w.scene, w.rays, light->tree, at[i],
+                                                              even, seed, only_seen, weights);
+                   traced += even.count() + nodes.looked_at;
+                   Row r(kTexels);
+                   add_node_rows(light->tree, weights, r);
+                   return r;
+               });
     }
-    HiddenNodes all;
-    for (const HiddenNodes& own : nodes) {
-        all.looked_at += own.looked_at;
-        all.hidden += own.hidden;
-    }
-    std::printf("%.1f rays to nodes a receiver, %.1f %% hidden\n",
-                static_cast<double>(all.looked_at) / static_cast<double>(wanted),
-                100.0 * static_cast<double>(all.hidden) /
-                    static_cast<double>(std::max<std::uint64_t>(all.looked_at, 1)));
-    std::vector<std::uint64_t> traced(wanted);
-    report("as baked", [&](std::size_t i) {
+    report("nearest scatterer, cut", with(light->tree, LookUp::nearest, cut));
+    report("footprint, cut", with(light->tree, LookUp::kernel, cut));
+    report("exact light, cut", with(*exact.tree, LookUp::nearest, cut));
+    report("as baked", [&](std::size_t i, std::uint64_t, std::uint64_t& traced) {
         Row r(kTexels * light->bands);
-        traced[i] = add_bounced(*light, {at[i]}, kMap, r);
+        traced += add_bounced(*light, {at[i]}, kMap, r);
         r.resize(kTexels);
         return r;
     });
-    {
-        double part[2]{};
-        for (std::size_t i = 0; i < wanted; ++i) {
-            Row r(kTexels * light->bands);
-            add_bounced(*light, {at[i]}, kMap, r);
-            for (std::size_t k = 0; k < kTexels; ++k)
-                part[traced[i] > 0] += std::pow(double(r[k]) - truth[i][k], 2);
-        }
-        std::printf("of rows: fitted %.4f, own rays %.4f\n", std::sqrt(part[0] / all_norm),
-                    std::sqrt(part[1] / all_norm));
-    }
-    std::printf("%.1f %% of receivers trace rays of their own\n",
-                100.0 *
-                    static_cast<double>(
-                        std::ranges::count_if(traced, [](std::uint64_t r) { return r > 0; })) /
-                    static_cast<double>(wanted));
-    report("exact vectors, same rays", with(*exact.tree, LookUp::nearest));
-    report("kernel, dense scatterers", with(*exact.tree, LookUp::kernel));
 }
 
 // Prints stages; rays of a stage do not depend on what else the machine does.
@@ -340,7 +365,8 @@ int main(int argc, char** argv) {
                                  : name == "ball"     ? tests::make_dented_ball()
                                                       : example("statue");
     if (is_known && what == "gather" && argc > 3) {
-        compare(World(scene), static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)));
+        compare(World(scene), World(name == "ball" ? split(split(scene)) : scene),
+                static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)));
     } else if (is_known && what == "truth") {
         check(scene, Quality::production);
     } else if (is_known && what == "cost") {

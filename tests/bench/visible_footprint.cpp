@@ -51,18 +51,20 @@ HiddenNodes weigh_seen_nodes(const formats::Scene& scene, const RayScene& rays,
     const float share = 1 / static_cast<float>(grid.count());
     HiddenNodes all;
     std::vector<Found> found;
-    trace_bounces(rays, at, grid, seed, [&](const BounceHit& hit, const Frame& frame) {
-        const SeenSide side = side_of_hit(scene, hit.hits, hit.lane);
-        if (!side.is_seen) {
-            return;
+    std::vector<BounceEnd> ends;
+    find_bounce_ends(scene, rays, at, grid, seed, ends);
+    for (const BounceEnd& end : ends) {
+        if (!end.sends()) {
+            continue;
         }
-        const SurfaceSide wanted{hit.hits.material[hit.lane], side.behind, side.normal};
-        const glm::vec3 y = hit.origin + hit.hits.distance[hit.lane] * hit.direction;
+        const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
+        const glm::vec3 y = at.origin + end.distance * end.direction;
         const std::uint32_t next = tree.find(y, wanted, 0);
         if (next == formats::kNone) {
-            return;
+            continue;
         }
-        const FootprintKernel kernel = footprint_of(hit, frame, side);
+        const FootprintKernel kernel =
+            footprint_of(at.origin, end, grid.cells[end.cell], make_frame(at.normal));
         const glm::mat3 widths =
             glm::inverse(glm::transpose(glm::mat3(kernel.across, kernel.along, kernel.above)));
         found.clear();
@@ -82,12 +84,12 @@ HiddenNodes weigh_seen_nodes(const formats::Scene& scene, const RayScene& rays,
                             [](float so_far, const Found& f) { return so_far + f.node.weight; });
         if (!(sum > 0)) {
             weights.push_back({next, share});
-            return;
+            continue;
         }
         for (const Found& f : found) {
             weights.push_back({f.node.node, share * f.node.weight / sum});
         }
-    });
+    }
     return all;
 }
 

@@ -63,27 +63,28 @@ class KernelAverage {
 
 }  // namespace
 
-FootprintKernel footprint_of(const BounceHit& hit, const Frame& frame, const SeenSide& side) {
+FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const BounceCell& cell,
+                             const Frame& frame) {
     // Cosines and areas that are not divided by.
     constexpr float kGrazing = 1e-4f, kNoArea = 1e-30f;
-    const float t_hit = hit.hits.distance[hit.lane];
-    glm::vec3 toward = frame.to_world(hit.cell.middle);
+    const SeenSide& side = end.side;
+    glm::vec3 toward = frame.to_world(cell.middle);
     float cosine = -glm::dot(toward, side.normal);
-    float t = t_hit * side.cosine / std::max(cosine, kGrazing);
+    float t = end.distance * side.cosine / std::max(cosine, kGrazing);
     // Beyond twice as far the plane says nothing about the surface.
-    if (!(cosine > kGrazing && t < 2 * t_hit)) {
-        toward = hit.direction;
+    if (!(cosine > kGrazing && t < 2 * end.distance)) {
+        toward = end.direction;
         cosine = std::max(side.cosine, kGrazing);
-        t = t_hit;
+        t = end.distance;
     }
     const auto moved = [&](glm::vec3 change) {
         const glm::vec3 d = frame.to_world(change);
         return t * (d + toward * (glm::dot(d, side.normal) / cosine));
     };
-    const glm::vec3 across = moved(hit.cell.across), along = moved(hit.cell.along);
+    const glm::vec3 across = moved(cell.across), along = moved(cell.along);
     const float area = glm::dot(side.normal, glm::cross(across, along));
     FootprintKernel kernel;
-    kernel.centre = hit.origin + t * toward;
+    kernel.centre = origin + t * toward;
     kernel.area = std::max(std::abs(area), kNoArea);
     const float inverse = std::copysign(1 / kernel.area, area);
     kernel.across = inverse * glm::cross(along, side.normal);
@@ -103,29 +104,34 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
                            std::uint64_t seed, std::vector<NodeWeight>& weights, LookUp look_up) {
     weights.clear();
     constexpr float kNoDistance = 1e-15f;
-    const float share = 1 / static_cast<float>(grid.count());
+    const Frame frame = make_frame(at.normal);
     KernelAverage average;
+    std::vector<BounceEnd> ends;
     BounceGather gathered;
-    gathered.rays =
-        trace_bounces(rays, at, grid, seed, [&](const BounceHit& hit, const Frame& frame) {
-            const SeenSide side = side_of_hit(scene, hit.hits, hit.lane);
-            const float near = 1 / std::max(hit.hits.distance[hit.lane], kNoDistance);
-            gathered.nearness += share * near * near;
-            if (!side.is_seen) {
-                return;
-            }
-            const SurfaceSide wanted{hit.hits.material[hit.lane], side.behind, side.normal};
-            const FootprintKernel kernel = footprint_of(hit, frame, side);
-            const glm::vec3 y = hit.origin + hit.hits.distance[hit.lane] * hit.direction;
-            const std::uint32_t node =
-                tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
-            if (node == formats::kNone ||
-                (look_up == LookUp::kernel &&
-                 average.add(tree, kernel, wanted, tree.brightness(node), share, weights))) {
-                return;
-            }
-            weights.push_back({node, share});
-        });
+    gathered.rays = find_bounce_ends(scene, rays, at, grid, seed, ends);
+    for (const BounceEnd& end : ends) {
+        if (!end.is_met) {
+            continue;
+        }
+        const float share =
+            1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
+        const float near = 1 / std::max(end.distance, kNoDistance);
+        gathered.nearness += share * near * near;
+        if (!end.side.is_seen) {
+            continue;
+        }
+        const BounceCell& cell = (end.is_quarter ? grid.quarters : grid.cells)[end.cell];
+        const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
+        const FootprintKernel kernel = footprint_of(at.origin, end, cell, frame);
+        const glm::vec3 y = at.origin + end.distance * end.direction;
+        const std::uint32_t node = tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
+        if (node == formats::kNone ||
+            (look_up == LookUp::kernel &&
+             average.add(tree, kernel, wanted, tree.brightness(node), share, weights))) {
+            continue;
+        }
+        weights.push_back({node, share});
+    }
     std::ranges::sort(weights, {}, &NodeWeight::node);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {

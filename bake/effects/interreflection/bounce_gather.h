@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/effects/interreflection/bounce_ends.h"
 #include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
 #include "bake/effects/interreflection/scatterers.h"
@@ -33,7 +34,8 @@ enum class LookUp : std::uint8_t {
 /// is moved to the plane of the facet, and with it what the direction changes over the cell's
 /// widths (transfer of path differentials: dy = t (dD - D (n.dD) / (n.D))). Where that plane is
 /// met far from the hit or not at all, the footprint is around the hit.
-FootprintKernel footprint_of(const BounceHit& hit, const Frame& frame, const SeenSide& side);
+FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const BounceCell& cell,
+                             const Frame& frame);
 
 /// The irradiance at a point as a sum over nodes, ascending: E = sum of weight * mean B of the
 /// node,

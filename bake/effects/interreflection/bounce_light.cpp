@@ -205,7 +205,7 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .layouts = {inputs.layouts.begin(), inputs.layouts.end()},
                     .tree = BounceTree(scatterers, inputs.layouts.size(), field.light.row_size()),
                     .of_site = make_bounce_grid(count_rays_of_site(count)),
-                    .of_receiver = make_bounce_grid(count),
+                    .of_receiver = make_cut_grid(count),
                     .of_averaged = make_bounce_grid(kRaysOfAveraged),
                     .sites = {},
                     .site_rows = {}});

@@ -39,7 +39,7 @@ struct BounceLight {
     /// Variance of a fit to sites, of that of one: with it the fit is as good as the rays `instead`
     /// of it, were these independent.
     float most_noise(const BounceGrid& instead) const {
-        return static_cast<float>(of_site.count()) / static_cast<float>(instead.count());
+        return static_cast<float>(of_site.rays) / static_cast<float>(instead.rays);
     }
 };
 

@@ -40,15 +40,21 @@ struct BounceCell {
     glm::vec3 across{0}, along{0};  ///< how far directions change over its two widths: secants
 };
 
-/// All cells, row by row: as many as there are rays.
+/// All cells, row by row, each with a ray.
 struct BounceGrid {
     std::uint32_t side = 0;  ///< a multiple of 4
+    std::uint32_t rays = 0;  ///< of a point at most: some cells may be cut in four
     std::vector<BounceCell> cells;
+    std::vector<BounceCell> quarters;  ///< of all cells, those of a grid of twice the side; or none
 
     std::uint32_t count() const { return side * side; }
+    std::uint32_t most_cut() const { return quarters.empty() ? 0 : (rays - count()) / 3; }
 };
 /// `count`: of count_bounce_rays.
 BounceGrid make_bounce_grid(std::uint32_t count);
+/// Fewer cells than that, some two thirds, and quarters of them for the rays that are left. Cells
+/// of less than 256 rays are too wide to tell each other where edges are: these are not cut.
+BounceGrid make_cut_grid(std::uint32_t count);
 
 /// The direction of two numbers in [0, 1], cosine-distributed if these are random: unit, the normal
 /// is z.
@@ -62,11 +68,20 @@ struct BounceHit {
     const PacketHits& hits;
     std::size_t lane = 0;
     glm::vec3 origin{0}, direction{0};  ///< [m], unit
-    const BounceCell& cell;
+    std::size_t cell = 0;               ///< of BounceGrid::cells
 };
 
+/// Where in its cell, of row and column, the ray of trace_bounces goes, in [0, 1)^2.
+inline glm::vec2 place_in_cell(const BounceGrid& grid, std::uint64_t seed, std::uint64_t key,
+                               std::uint32_t row, std::uint32_t column) {
+    const std::uint32_t packet = row / 4 * (grid.side / 4) + column / 4;
+    const std::uint32_t lane = row % 4 * 4 + column % 4, j = lane % 2;
+    const auto u = random_uniform(seed, RandomStage::bounce_rays, key, 8 * packet + lane / 2);
+    return {u[2 * j], u[2 * j + 1]};
+}
+
 /// Traces a cosine-distributed ray in each cell, in packets of neighbouring cells, and calls
-/// visit(hit, frame) for each that hits something, in a fixed order; `frame`: that of the cells.
+/// visit(hit) for each that hits something, in a fixed order. Cells are in the frame of the normal.
 /// Returns the rays. A point without a normal traces none.
 template <class Visit>
 std::uint64_t trace_bounces(const RayScene& rays, const Receiver& at, const BounceGrid& grid,
@@ -104,7 +119,7 @@ std::uint64_t trace_bounces(const RayScene& rays, const Receiver& at, const Boun
                     const std::size_t cell = (row + lane / 4) * grid.side + column + lane % 4;
                     const glm::vec3 direction{packet.dir_x[lane], packet.dir_y[lane],
                                               packet.dir_z[lane]};
-                    visit(BounceHit{hits, lane, at.origin, direction, grid.cells[cell]}, frame);
+                    visit(BounceHit{hits, lane, at.origin, direction, cell});
                 }
             }
         }

@@ -119,7 +119,7 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 part.rays += trace_bounces(
                     inputs.bake.rays, probes[i], grid, inputs.knobs.seed,
-                    [&](const BounceHit& hit, const Frame&) {
+                    [&](const BounceHit& hit) {
                         const PacketHits& hits = hit.hits;
                         const std::size_t lane = hit.lane;
                         const SeenSide side = side_of_hit(inputs.bake.scene, hits, lane);

@@ -72,7 +72,6 @@ struct Met {
     glm::vec2 uv;
     glm::vec3 normal;  // of the plane, toward the ray
     float t;
-    PacketHits hits{};
     BounceCell cell;
 
     explicit Met(std::uint32_t i) {
@@ -84,13 +83,13 @@ struct Met {
         cell.across = through(h / 2, 0) - through(-h / 2, 0);
         cell.along = through(0, h / 2) - through(0, -h / 2);
         normal = glm::normalize(glm::vec3(0.3f * u[2], 0.3f * u[3], 1) - 2.0f * cell.middle);
-        hits.distance[0] = t;
     }
     glm::vec3 through(float du, float dv) const { return to_hemisphere(uv.x + du, uv.y + dv); }
     FootprintKernel footprint() const {
         const SeenSide side{true, false, normal, -glm::dot(cell.middle, normal)};
-        return footprint_of({hits, 0, {0, 0, 0}, cell.middle, cell},
-                            {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, side);
+        return footprint_of({0, 0, 0},
+                            {.direction = cell.middle, .distance = t, .side = side, .is_met = true},
+                            cell, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}});
     }
     glm::vec3 on_plane(glm::vec3 direction) const {
         return t * glm::dot(cell.middle, normal) / glm::dot(direction, normal) * direction;

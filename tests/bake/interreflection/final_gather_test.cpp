@@ -74,7 +74,7 @@ Errors compare(const Room& room, const Waves& waves, std::uint32_t count) {
     tree.set_rows({rows, kParts});
     const auto exact = [&](const Receiver& at, const BounceGrid& grid) {
         Parts sum{};
-        trace_bounces(room.rays, at, grid, 1, [&](const BounceHit& hit, const Frame&) {
+        trace_bounces(room.rays, at, grid, 1, [&](const BounceHit& hit) {
             const Parts there = waves.at(hit.origin + hit.hits.distance[hit.lane] * hit.direction);
             for (std::size_t k = 0; k < kParts; ++k) {
                 sum[k] += there[k] / grid.count();
