@@ -14,6 +14,7 @@
 #include "bake/compare/relight_table.h"
 #include "formats/opal/terms.h"
 #include "runtime/shade.h"
+#include "runtime/volumes/node_radiance.h"
 #include "runtime/volumes/relight_volumes.h"
 
 namespace opaline::cli {

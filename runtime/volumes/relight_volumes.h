@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,7 +37,9 @@ namespace opaline::runtime {
 /// e_00 ..., e_10 ..., with E_s what the sun sends and V_s how much of it is left there
 /// (sun_light.h)
 ///
-///     e_js = E_s V_s^(1 + power_j albedo).
+///     e_js = E_s V_s^(1 + power_j albedo),
+///
+/// a little less where V falls within the distance of points (sun_point.h).
 struct VolumeLight {
     struct Part {
         std::uint32_t terms =
@@ -103,11 +104,5 @@ struct RelightVolumesOptions {
 /// read_opal's checks.
 VolumeLight relight_volumes(const formats::VolumesView& volumes, const LightVector& light,
                             const RelightVolumesOptions& options = {});
-
-/// max(0, J) of every node of a volume toward the point `eye` [m, world]; without one the mean of J
-/// over all directions, likewise not below 0. T counts as 1: as near the node.
-std::vector<formats::Rgb> node_radiance(const formats::VolumesView& volumes,
-                                        const VolumeLight& light, std::size_t volume,
-                                        const std::optional<formats::Vec3>& eye);
 
 }  // namespace opaline::runtime

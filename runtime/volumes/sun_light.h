@@ -17,11 +17,11 @@ namespace opaline::runtime {
 ///
 ///     V_s = min(e^-tau, 2 U_s),   tau = sum over volumes of int sigma_t density ds toward the sun
 ///
-/// by the midpoint rule in steps of at most 8 / sun_boxes voxels. What rows know, U_s, is coarse:
-/// means over four texels, linear between nodes. But they alone know the shadows of surfaces, where
-/// they are near 0, and in coloured rows (bands = 3) hues of the albedo: there it is min(e^-tau,
-/// U_s). `reach`: of each volume U_s at nodes, share[node * suns + s], not below 0. The
-/// same bits for any number of threads.
+/// (sun_columns.h). What rows know, U_s, is coarse: means over four texels, linear between nodes.
+/// But they alone know the shadows of surfaces, where they are near 0, and in coloured rows (bands
+/// = 3) hues of the albedo: there it is min(e^-tau, U_s). Coefficients are lowered for what lines
+/// between points are too bright (find_lowering). `reach`: of each volume U_s at nodes, share[node
+/// * suns + s], not below 0. The same bits for any number of threads.
 void light_sun_points(const formats::VolumesView& volumes,
                       std::span<const std::vector<formats::Rgb>> reach, unsigned threads,
                       VolumeLight& light);

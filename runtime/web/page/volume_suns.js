@@ -1,98 +1,7 @@
 "use strict";
-// How much of suns' light reaches the points of volumes: the steps of runtime/volumes/sun_light.cpp.
+// How much of suns' light reaches the points of volumes: the steps of runtime/volumes/sun_light.cpp and sun_point.cpp.
 const VolumeSuns = (() => {
-  const kNone = 0xffffffff, kSlack = 1e-3;  // of a step, which rounding may add
-  const kDarkest = 12;  // optical depth at which a march ends
-
-  // Boxes between points along a brick's edge.
-  const boxesOf = volume => Math.min(16 / volume.spacing, 8);
-
-  const brickAt = (volumes, volume, [x, y, z]) => {
-    const [nx, ny, nz] = volume.extent;
-    if (x < 0 || y < 0 || z < 0 || x >= nx || y >= ny || z >= nz) return kNone;
-    return volumes.table[volume.firstCell + (z * ny + y) * nx + x];
-  };
-
-  // The density of each brick at 9 x 9 x 9 voxels, those of neighbours among them.
-  function padDensity(volumes, volume, cells) {
-    const padded = new Float32Array(729 * volume.bricks), base = volume.firstBrickNumber;
-    cells.forEach((cell, brick) => {
-      for (let i = 0; cell && i < 729; ++i) {
-        const at = [i % 9, Math.floor(i / 9) % 9, Math.floor(i / 81)];
-        const other = brickAt(volumes, volume, cell.map((c, a) => c + (at[a] >> 3)));
-        if (other === kNone) continue;
-        padded[729 * brick + i] = volumes.scale[base + other] *
-            volumes.density[512 * (base + other) + ((at[2] & 7) * 8 + (at[1] & 7)) * 8 + (at[0] & 7)];
-      }
-    });
-    return padded;
-  }
-
-  // What does not depend on the light, found once.
-  function prepare(volumes) {
-    volumes.sunPoints ??= volumes.list.map(volume => {
-      const [nx, ny, nz] = volume.extent, cells = new Array(volume.bricks);
-      for (let at = 0; at < nx * ny * nz; ++at) {
-        const brick = volumes.table[volume.firstCell + at];
-        if (brick !== kNone) cells[brick] = [at % nx, Math.floor(at / nx) % ny, Math.floor(at / nx / ny)];
-      }
-      return { cells, padded: padDensity(volumes, volume, cells), inverse: Volumes.inverseOf(volume.toWorld) };
-    });
-    return volumes.sunPoints;
-  }
-
-  function density(padded, first, x, y, z) {
-    const i = Math.min(Math.floor(x), 7), j = Math.min(Math.floor(y), 7), k = Math.min(Math.floor(z), 7);
-    const u = x - i, v = y - j, w = z - k, at = first + (k * 9 + j) * 9 + i;
-    const row = a => padded[a] + u * (padded[a + 1] - padded[a]);
-    const low = row(at), high = row(at + 81);
-    return (1 - w) * (low + v * (row(at + 9) - low)) + w * (high + v * (row(at + 90) - high));
-  }
-
-  // Density times way [m] from `from` out of the volume, or to where nothing is left; places in bricks from the table's corner.
-  function column(volumes, volume, padded, from, direction) {
-    const { extent } = volume, cell = [0, 0, 0];
-    let t = 0, end = Infinity;
-    for (let a = 0; a < 3; ++a) {
-      if (direction[a] === 0) {
-        if (from[a] < 0 || from[a] > extent[a]) return 0;
-        continue;
-      }
-      const low = -from[a] / direction[a], high = (extent[a] - from[a]) / direction[a];
-      t = Math.max(t, Math.min(low, high));
-      end = Math.min(end, Math.max(low, high));
-    }
-    if (!(t < end)) return 0;
-    for (let a = 0; a < 3; ++a) {
-      cell[a] = Math.min(Math.max(Math.floor(from[a] + t * direction[a]), 0), extent[a] - 1);
-    }
-    const boxes = boxesOf(volume), steps = boxes * Vector.norm(direction), place = x => Math.min(Math.max(8 * x, 0), 8);
-    const most = kDarkest / Math.min(...volume.extinction);
-    let sum = 0;
-    while (t < end && sum <= most) {
-      let leaves = Infinity, axis = 0;
-      for (let a = 0; a < 3; ++a) {
-        if (direction[a] === 0) continue;
-        const face = (cell[a] + (direction[a] > 0 ? 1 : 0) - from[a]) / direction[a];
-        if (face < leaves) [leaves, axis] = [face, a];
-      }
-      const to = Math.min(leaves, end), brick = t < to ? brickAt(volumes, volume, cell) : kNone;
-      if (brick !== kNone) {
-        const count = Math.min(Math.max(Math.ceil((to - t) * steps - kSlack), 1), 2 * boxes), h = (to - t) / count;
-        let own = 0;
-        for (let i = 0; i < count; ++i) {
-          const s = t + (i + 0.5) * h;
-          own += density(padded, 729 * brick, place(from[0] + s * direction[0] - cell[0]),
-                         place(from[1] + s * direction[1] - cell[1]), place(from[2] + s * direction[2] - cell[2]));
-        }
-        sum += h * own;
-      }
-      t = Math.max(t, to);
-      cell[axis] += direction[axis] > 0 ? 1 : -1;
-      if (cell[axis] < 0 || cell[axis] >= extent[axis]) break;
-    }
-    return sum;
-  }
+  const { kNone, boxesOf, brickAt, prepare } = VolumeColumns;
 
   // Shares of suns' light at a point of a brick as rows have them: linear between nodes.
   function reachAt(volumes, volume, brick, at, reach, suns, sun) {
@@ -113,36 +22,64 @@ const VolumeSuns = (() => {
     return whole > 0 ? sum.map(x => x / whole) : [1, 1, 1];
   }
 
-  // Sets the coefficients of suns of volume v. `reach`: three shares of each sun at each node; `part`, `values`
-  // as relight makes them.
-  function light(volumes, v, suns, reach, part, values) {
-    const volume = volumes.list[v], prepared = prepare(volumes), { cells, inverse } = prepared[v];
-    if (inverse === null) return;
-    const boxes = boxesOf(volume), side = boxes + 1, stride = part.suns * part.sunTerms, m = volume.toWorld;
-    const ways = prepared.map((other, w) => other.inverse && {
-      volume: volumes.list[w], padded: other.padded,
-      from: p => other.inverse.map((row, a) =>
-          (row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3]) / 8 - volumes.list[w].firstBrick[a]),
-      directions: suns.map(sun => other.inverse.map(row => (row[0] * sun[0] + row[1] * sun[1] + row[2] * sun[2]) / 8)),
-    }).filter(way => way);
-    const firstOf = brick => part.first - part.suns - (brick + 1) * side ** 3 * stride;
-    const pointAt = ([x, y, z]) => (z * side + y) * side + x;
+  // A point's column less those of the points next to it, where there are any; `own`: its place in `column`, `first`,
+  // `below`: those of the first points of its brick and of the bricks below along each axis, or null.
+  function risesAt(column, first, place, boxes, own, below) {
+    const rises = [];
+    for (let a = 0, stride = 1; a < 3; ++a, stride *= boxes + 1) {
+      if (place[a] < boxes) rises.push(column[own] - column[own + stride]);
+      if (place[a] > 0) {
+        rises.push(column[own] - column[own - stride]);
+      } else if (below[a] !== null) {
+        rises.push(column[own] - column[below[a] + own - first + (boxes - 1) * stride]);
+      }
+    }
+    return rises;
+  }
 
-    function lightPoint(brick, cell, place) {
-      const at = place.map(x => x * 8 / boxes), index = at.map((x, a) => 8 * (volume.firstBrick[a] + cell[a]) + x);
+  // So that lines between points have the mean of an exponential (find_lowering of runtime/volumes/sun_point.h).
+  function loweringOf(rises, power) {
+    let sum = 0;
+    for (const rise of rises) {
+      const x = Math.abs(power * rise), size = 1 + x + 0.5 * x * x;
+      sum += (power * rise > 0 ? size : 1 / size) - 1;
+    }
+    return 1 / (1 + Math.min(Math.max(0, sum / 12), 1e6));
+  }
+
+  const luminance = c => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
+
+  // [volume][sun] What VolumeColumns.find says.
+  const findColumns = (volumes, suns) => volumes.list.map((_, v) => suns.map(sun => VolumeColumns.find(volumes, v, sun)));
+
+  // Sets the coefficients of suns of volume v. `reach`: three shares of each sun at each node; `columns`: of all
+  // volumes; `part`, `values` as relight makes them.
+  function light(volumes, v, suns, columns, reach, part, values) {
+    const volume = volumes.list[v], { cells, blocks, inverse } = prepare(volumes)[v];
+    if (inverse === null) return;
+    const boxes = boxesOf(volume), side = boxes + 1, points = side ** 3, stride = part.suns * part.sunTerms, m = volume.toWorld;
+    const firstOf = brick => part.first - part.suns - (brick + 1) * points * stride;
+    const albedo = luminance(volume.albedo);
+
+    function lightPoint(brick, place, point, below) {
+      const at = place.map(x => x * 8 / boxes), index = at.map((x, a) => 8 * (volume.firstBrick[a] + cells[brick][a]) + x);
       const world = [0, 4, 8].map(row => m[row] * index[0] + m[row + 1] * index[1] + m[row + 2] * index[2] + m[row + 3]);
-      const starts = ways.map(way => way.from(world)), to = 4 * (firstOf(brick) + pointAt(place) * stride);
+      const own = brick * points + point, to = 4 * (firstOf(brick) + point * stride);
       for (let s = 0; s < part.suns; ++s) {
         const depth = [0, 0, 0], rows = reachAt(volumes, volume, brick, at, reach, part.suns, s);
-        ways.forEach((way, w) => {
-          const c = column(volumes, way.volume, way.padded, starts[w], way.directions[s]);
-          for (let b = 0; b < 3; ++b) depth[b] += c * way.volume.extinction[b];
+        columns.forEach((ofSun, w) => {
+          if (ofSun[s] === null) return;
+          const c = w === v ? ofSun[s][own] : VolumeColumns.from(volumes, w, ofSun[s], suns[s], world);
+          for (let b = 0; b < 3; ++b) depth[b] += c * volumes.list[w].extinction[b];
         });
+        const rises = columns[v][s] === null ? [] : risesAt(columns[v][s], brick * points, place, boxes, own, below);
         for (let b = 0; b < 3; ++b) {
-          const share = Math.min(Math.exp(-depth[b]), (volume.bands === 1 ? 2 : 1) * rows[b]), sent = values[4 * (part.first - part.suns + s) + b];
+          const share = Math.min(Math.exp(-depth[b]), (volume.bands === 1 ? 2 : 1) * rows[b]);
+          const sent = values[4 * (part.first - part.suns + s) + b];
           for (let j = 0; j < part.sunTerms; ++j) {
             const power = part.sunPower[j] * volume.albedo[b];
-            values[to + 4 * (j * part.suns + s) + b] = sent * share * (power === 0 ? 1 : share ** power);
+            const lowered = loweringOf(rises, volume.extinction[b] * (1 + part.sunPower[j] * albedo));
+            values[to + 4 * (j * part.suns + s) + b] = lowered * sent * share * (power === 0 ? 1 : share ** power);
           }
         }
       }
@@ -150,22 +87,25 @@ const VolumeSuns = (() => {
 
     // Points on upper faces stand in the next brick, if there is one: copied from it.
     for (const copies of [false, true]) {
-      for (let brick = 0; brick < volume.bricks; ++brick) {
-        for (let point = 0; cells[brick] && point < side ** 3; ++point) {
+      blocks.forEach((block, brick) => {
+        const below = [0, 1, 2].map(axis => {
+          const next = brickAt(volumes, volume, cells[brick].map((c, a) => c - (a === axis ? 1 : 0)));
+          return next === kNone ? null : next * points;
+        });
+        for (let point = 0; point < points; ++point) {
           const place = [point % side, Math.floor(point / side) % side, Math.floor(point / side / side)];
-          const owner = brickAt(volumes, volume, cells[brick].map((c, a) => c + (place[a] === boxes ? 1 : 0)));
-          const isOwn = owner === brick || owner === kNone;
-          if (isOwn === copies) continue;
-          if (isOwn) {
-            lightPoint(brick, cells[brick], place);
-          } else {
-            const from = 4 * (firstOf(owner) + pointAt(place.map(x => x % boxes)) * stride);
+          const [owner, there] = VolumeColumns.ownerOf(block, brick, place, boxes);
+          if ((owner !== brick) !== copies) continue;
+          if (copies) {
+            const from = 4 * (firstOf(owner) + there * stride);
             values.copyWithin(4 * (firstOf(brick) + point * stride), from, from + 4 * stride);
+          } else {
+            lightPoint(brick, place, point, below);
           }
         }
-      }
+      });
     }
   }
 
-  return { boxesOf, light };
+  return { boxesOf, findColumns, light };
 })();

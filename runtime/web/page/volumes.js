@@ -202,7 +202,7 @@ const Volumes = (() => {
         Rows.addRow(rows, volume, row + 1 + k, lights.whole, scale, values, to + 4 * k);
       }
     }
-    if (part.suns > 0) VolumeSuns.light(volumes, v, lights.directions, reach, part, values);
+    if (part.suns > 0) VolumeSuns.light(volumes, v, lights.directions, lights.columns, reach, part, values);
   }
 
   // The most terms of a node, suns left out.
@@ -229,6 +229,7 @@ const Volumes = (() => {
       return Light.coefficientsOf(alone, n);
     });
     const lights = { whole: coefficients, parts, directions: suns, suns: joined(sunLights),
+                     columns: VolumeSuns.findColumns(volumes, suns),
                      moments: joined(momentLights(integral, n, most(false))),
                      momentsOfRest: suns.length > 0 ? joined(momentLights(rest, n, most(true))) : null };
     let first = 0;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "formats/opal/cubemap.h"
+#include "runtime/volumes/node_radiance.h"
 #include "tests/runtime/light_test_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "formats/opal/cubemap.h"
+#include "runtime/volumes/node_radiance.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/suns.h"
 #include "runtime/volumes/volume_march.h"

@@ -1,0 +1,151 @@
+#include "runtime/volumes/sun_columns.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/parallel.h"
+#include "runtime/volumes/brick_walk.h"
+#include "runtime/volumes/column_sweep.h"
+#include "runtime/volumes/volume_source.h"
+
+namespace opaline::runtime {
+namespace {
+
+using formats::kBrickSide;
+using formats::kNoBrick;
+using formats::Vec3;
+
+// A volume's bricks in the order in which the light of a sun meets them, tile after tile.
+struct ColumnJob {
+    std::size_t volume, sun;
+    std::optional<ColumnFrame> frame;
+    std::vector<TileBrick> bricks;
+};
+
+// Those of one tile.
+struct ColumnTask {
+    const ColumnJob* job;
+    std::size_t first, count;
+};
+
+std::vector<ColumnTask> list_tasks(std::span<const ColumnJob> jobs) {
+    std::vector<ColumnTask> tasks;
+    for (const ColumnJob& job : jobs) {
+        for (std::size_t first = 0, end = 0; first < job.bricks.size(); first = end) {
+            while (end < job.bricks.size() && is_same_tile(job.bricks[first], job.bricks[end])) {
+                ++end;
+            }
+            tasks.push_back({&job, first, end - first});
+        }
+    }
+    return tasks;
+}
+
+void copy_upper_faces(const SunColumns& volume, std::uint32_t brick, std::span<float> column) {
+    const std::uint32_t boxes = volume.boxes();
+    const std::size_t points = volume.points();
+    const BrickBlock block = brick_block(volume.lattice, volume.cell(brick));
+    std::size_t at = brick * points;
+    for (std::uint32_t z = 0; z <= boxes; ++z) {
+        for (std::uint32_t y = 0; y <= boxes; ++y) {
+            for (std::uint32_t x = 0; x <= boxes; ++x, ++at) {
+                if (std::max({x, y, z}) < boxes) continue;
+                const PointOwner owner = point_owner(brick, block, boxes, {x, y, z});
+                column[at] = column[owner.brick * points + owner.point];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+std::array<std::int32_t, 3> SunColumns::cell(std::uint32_t brick) const {
+    const auto& extent = lattice.record->extent;
+    const std::uint32_t at = cell_of_brick[brick];
+    return {static_cast<std::int32_t>(at % extent[0]),
+            static_cast<std::int32_t>(at / extent[0] % extent[1]),
+            static_cast<std::int32_t>(at / extent[0] / extent[1])};
+}
+
+std::optional<SunColumns> place_bricks(const formats::VolumesView& volumes,
+                                       const formats::VolumeRecord& record) {
+    const auto lattice = make_lattice(volumes, record);
+    if (!lattice || lattice->table.empty() || record.brick_count == 0) return std::nullopt;
+    SunColumns placed{*lattice, std::vector<std::uint32_t>(record.brick_count), {}};
+    for (std::uint32_t at = 0; at < lattice->table.size(); ++at) {
+        if (lattice->table[at] != kNoBrick) placed.cell_of_brick[lattice->table[at]] = at;
+    }
+    return placed;
+}
+
+PointOwner point_owner(std::uint32_t brick, const BrickBlock& block, std::uint32_t boxes,
+                       const std::array<std::uint32_t, 3>& place) {
+    std::size_t neighbour = 0, here = 0, there = 0;
+    for (std::size_t a = 3; a-- > 0;) {
+        const bool is_upper = place[a] == boxes;
+        neighbour |= (is_upper ? std::size_t{1} : 0) << a;
+        here = here * (boxes + 1) + place[a];
+        there = there * (boxes + 1) + (is_upper ? 0 : place[a]);
+    }
+    const std::uint32_t owner = block.number[neighbour];
+    if (owner == brick || owner == kNoBrick) return {brick, here};
+    return {owner, there};
+}
+
+void find_sun_columns(std::span<SunColumns> volumes, std::span<const Vec3> suns, unsigned threads) {
+    std::vector<ColumnJob> jobs;
+    for (std::size_t v = 0; v < volumes.size(); ++v) {
+        volumes[v].column.assign(suns.size(), {});
+        for (std::size_t s = 0; s < suns.size(); ++s) {
+            volumes[v].column[s].resize(volumes[v].cell_of_brick.size() * volumes[v].points());
+            jobs.push_back({v, s, make_column_frame(volumes[v].lattice, suns[s]), {}});
+        }
+    }
+    const auto count = static_cast<std::uint32_t>(jobs.size());
+    const auto for_each = [threads](std::uint32_t many, const auto& work) {
+        for_ranges(many, 1, threads, [&](std::uint32_t first, std::uint32_t end) {
+            for (std::uint32_t i = first; i < end; ++i) {
+                work(i);
+            }
+        });
+    };
+    for_each(count, [&](std::uint32_t i) {
+        if (jobs[i].frame) jobs[i].bricks = list_tiles(volumes[jobs[i].volume], *jobs[i].frame);
+    });
+    const std::vector<ColumnTask> tasks = list_tasks(jobs);
+    for_each(static_cast<std::uint32_t>(tasks.size()), [&](std::uint32_t i) {
+        const ColumnJob& job = *tasks[i].job;
+        SunColumns& volume = volumes[job.volume];
+        sweep_tile(volume, *job.frame,
+                   std::span(job.bricks).subspan(tasks[i].first, tasks[i].count),
+                   volume.column[job.sun]);
+    });
+    for_each(count, [&](std::uint32_t i) {
+        SunColumns& volume = volumes[jobs[i].volume];
+        for (std::uint32_t brick = 0; brick < volume.cell_of_brick.size(); ++brick) {
+            copy_upper_faces(volume, brick, volume.column[jobs[i].sun]);
+        }
+    });
+}
+
+float column_from(const SunColumns& volume, std::size_t number, Vec3 sun, Vec3 from) {
+    BrickWalk walk = start_walk(volume.lattice, from, sun, 0, HUGE_VAL);
+    const auto span = next_brick(volume.lattice, walk);
+    if (!span) return 0;
+    std::array<float, 3> at{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double place = walk.origin[a] + span->begin * walk.direction[a] - span->cell[a];
+        at[a] = tame(static_cast<float>(kBrickSide * place), kBrickSide);
+    }
+    const NodeCell box = box_at(volume.boxes(), at);
+    const auto points = points_of_box(volume.boxes(), box.number);
+    const std::array<float, 8> weight = corner_weights(box.weight);
+    const std::size_t first = volume.lattice.brick(span->cell) * volume.points();
+    float sum = 0;
+    for (std::size_t i = 0; i < 8; ++i) {
+        sum += weight[i] * volume.column[number][first + points[i]];
+    }
+    return sum;
+}
+
+}  // namespace opaline::runtime

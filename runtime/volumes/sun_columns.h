@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "formats/opal/vec3.h"
+#include "formats/opal/volumes.h"
+#include "runtime/volumes/volume_lattice.h"
+
+namespace opaline::runtime {
+
+/// What of a volume's density stands between its points of suns (sun_light.h) and each sun.
+struct SunColumns {
+    VolumeLattice lattice;
+    std::vector<std::uint32_t> cell_of_brick;  ///< in the table, x fastest
+    /// [m] Density times way from a point out of the volume: column[sun][brick * points() + point].
+    std::vector<std::vector<float>> column;
+
+    std::array<std::int32_t, 3> cell(std::uint32_t brick) const;
+    std::uint32_t boxes() const { return sun_boxes(*lattice.record); }
+    std::size_t points() const {
+        const std::size_t side = boxes() + 1;
+        return side * side * side;
+    }
+};
+
+/// Nothing where no ray meets the volume. No columns yet.
+std::optional<SunColumns> place_bricks(const formats::VolumesView& volumes,
+                                       const formats::VolumeRecord& record);
+
+/// Finds the columns toward `suns` [world, unit] in all volumes.
+///
+/// Columns stand a voxel apart along the two axes across which the sun's light runs least, and lean
+/// as it does: the plane at height h of the third axis meets column (U, V) at (U + m_u h, V + m_v
+/// h), so that in one plane all of them stand between voxels alike. Planes of voxels are added from
+/// the sun on, by the trapezoidal rule; a point reads the four columns around it. The same bits for
+/// any number of threads.
+void find_sun_columns(std::span<SunColumns> volumes, std::span<const formats::Vec3> suns,
+                      unsigned threads);
+
+/// The same from any place of the world: where the ray comes into a brick, between its points.
+float column_from(const SunColumns& volume, std::size_t number, formats::Vec3 sun,
+                  formats::Vec3 from);
+
+/// Bricks have points on their faces in common. A point is known in the brick in which it stands:
+/// on upper faces that is the next one, if there is one.
+struct PointOwner {
+    std::uint32_t brick = 0;
+    std::size_t point = 0;
+};
+/// `block`: of the cell of `brick`; `place`: of the point in it, each up to `boxes`.
+PointOwner point_owner(std::uint32_t brick, const BrickBlock& block, std::uint32_t boxes,
+                       const std::array<std::uint32_t, 3>& place);
+
+}  // namespace opaline::runtime
