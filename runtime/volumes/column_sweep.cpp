@@ -14,8 +14,8 @@ using formats::kNoBrick;
 
 constexpr std::int64_t kTile = 48;  // columns along its edge
 // Bricks that reach beyond a tile are added there, too, and not read.
-constexpr std::int64_t kMargin = kBrickSide;
-constexpr std::size_t kWidth = kTile + 2 * kMargin;
+constexpr std::int64_t kBeyond = kBrickSide;
+constexpr std::size_t kWidth = kTile + 2 * kBeyond;
 
 constexpr std::int64_t floor_divide(std::int64_t a, std::int64_t b) {
     return a / b - (a % b < 0 ? 1 : 0);
@@ -88,8 +88,8 @@ struct TileSweep {
 
     // Sums from column (u, v) on, counted from the tile's first one; both in [-8, 56).
     float* row(std::int64_t u, std::int64_t v) {
-        return sum.data() + (static_cast<std::size_t>(v + kMargin) * kWidth +
-                             static_cast<std::size_t>(u + kMargin));
+        return sum.data() + (static_cast<std::size_t>(v + kBeyond) * kWidth +
+                             static_cast<std::size_t>(u + kBeyond));
     }
 };
 
@@ -103,7 +103,7 @@ void add_plane(TileSweep& tile, const BrickBlock& block, std::uint32_t layer, fl
         std::int64_t{kBrickSide} * block.cell[frame.u] - lean_u.whole - tile.first_u;
     const std::int64_t v =
         std::int64_t{kBrickSide} * block.cell[frame.v] - lean_v.whole - tile.first_v;
-    if (u <= -kMargin || v <= -kMargin || u > kTile || v > kTile) return;
+    if (u <= -kBeyond || v <= -kBeyond || u > kTile || v > kTile) return;
     const DensityPlane plane = density_plane(tile.volume.lattice, frame, block, layer, weight);
     std::array<float, kPlaneSide * kBrickSide> mixed;
     for (std::size_t j = 0; j < kPlaneSide; ++j) {

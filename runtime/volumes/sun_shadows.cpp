@@ -35,7 +35,7 @@ std::array<Vec3, 8> corners_of(const formats::VolumeRecord& record) {
     return corner;
 }
 
-struct Reach {
+struct Stretch {
     double low = HUGE_VAL, high = -HUGE_VAL;
 
     void take(double x) {
@@ -45,14 +45,14 @@ struct Reach {
 };
 
 // Both in voxels. NaN is anywhere.
-bool may_meet(const Reach& a, const Reach& b) {
+bool may_meet(const Stretch& a, const Stretch& b) {
     constexpr double kRounding = 1;
     return !(a.high + kRounding < b.low) && !(b.high + kRounding < a.low);
 }
 
 // Places as columns of a volume see them: across as two axes and the height toward the sun.
 struct Outline {
-    Reach u, v, height;
+    Stretch u, v, height;
     bool is_finite = true;
 
     void take(const ColumnFrame& frame, const std::array<double, 3>& voxel) {
