@@ -69,6 +69,8 @@ struct ModelCheckOptions {
     TermSet simulated = TermSet::diffuse | TermSet::single | TermSet::multiple;
     /// It holds what volumes scatter to surfaces, too.
     bool lit_by_volumes = false;
+    /// Of that, what surfaces had sent to the volumes, too.
+    bool volumes_see_surfaces = false;
     double noise = 0.01;                  ///< relative to the RMS of the truth: enough for any file
     double noise_share = 0.25;            ///< relative to the difference: enough for this file
     std::uint64_t max_events = 20000000;  ///< most scatterings and surfaces met, for each light

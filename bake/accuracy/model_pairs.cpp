@@ -86,6 +86,10 @@ std::vector<PathSpace> held_light_spaces(const ModelScenes& scenes, const LightS
     PathOptions through = paths, between = paths;
     through.terms = options.simulated & ~TermSet::interreflection;
     through.through_volumes = true;
+    through.by_volumes = true;
+    if (options.volumes_see_surfaces) {
+        through.terms = through.terms | TermSet::interreflection;
+    }
     between.terms = options.simulated & TermSet::interreflection;
     std::vector<PathSpace> spaces{{scenes.whole, sampler, through}};
     if (between.terms != TermSet::none) {

@@ -32,6 +32,7 @@ const EffectTable& all_effects() {
                                          describe_scattered_once(Effect::volume_single),
                                          describe_scattered_often(Effect::volume_multiple),
                                          describe_sent_light(Effect::volume_surface),
+                                         describe_seen_light(Effect::surface_volume),
                                          describe_cloud(Effect::cloud),
                                          describe_radiosity(Effect::radiosity),
                                          describe_emitters(Effect::emitters),

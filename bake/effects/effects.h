@@ -18,6 +18,7 @@ enum class Effect : std::uint8_t {
     volume_single,    ///< light scattered once in volumes
     volume_multiple,  ///< light scattered more than once in volumes
     volume_surface,   ///< light that volumes scatter to surfaces
+    surface_volume,   ///< light that surfaces send to volumes
     cloud,            ///< light scattered by cloud layers
     radiosity,        ///< light between cloud layers and the ground
     emitters,         ///< light of lamps in the scene

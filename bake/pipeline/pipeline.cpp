@@ -247,6 +247,7 @@ formats::Status check_model_of(const EffectTable& effects, const formats::Scene&
     ModelCheckOptions options;
     options.simulated = held_light(effects, result.plan);
     options.lit_by_volumes = lights_surfaces(result.volume_plan);
+    options.volumes_see_surfaces = sees_surfaces(result.volume_plan);
     options.seed = result.knobs.seed;
     auto checked = run_stage(result.stages, "model check", [&](std::uint64_t&) {
         return check_model(scene, result.asset.view(), options, context);
@@ -329,7 +330,8 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         return std::move(status).error();
     }
     if (has_volumes) {
-        if (auto status = add_volumes({effects, scene, rays, receivers}, context, result);
+        const std::vector<RowLayout> layouts = final_layouts(bake, subjects);
+        if (auto status = add_volumes({effects, scene, rays, receivers, layouts}, context, result);
             !status) {
             return std::move(status).error();
         }

@@ -62,8 +62,13 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
         counts.translucent_rows += vertices * (terms + (knobs.separate_terms ? 1 : 0));
     }
     const std::vector<VolumeLayout> layouts = plan_volumes(scene, knobs).layouts;
-    for (const VolumeWork& work : count_volume_work(scene, layouts, knobs)) {
+    const std::vector<VolumeWork> works = count_volume_work(scene, layouts, knobs);
+    for (const VolumeWork& work : works) {
         counts.volume_bytes += volume_memory(work, knobs);
+    }
+    if (sees_surfaces(layouts)) {
+        counts.volume_bytes +=
+            seen_surfaces_memory(works, knobs, static_cast<double>(counts.scene.vertices));
     }
     for (const formats::CloudLayer& layer : scene.layers) {
         counts.layer_bytes += layer_memory(layer, knobs);

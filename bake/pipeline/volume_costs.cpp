@@ -68,11 +68,21 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         bill.add_bytes(volume_density_bytes(work));
         bill.add_bytes(attenuated_row_bytes(work, request.knobs), payer);
     });
+    if (sees_surfaces(volumes.layouts)) {
+        bill.open("surfaces that volumes see");
+        const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
+        bill.add(seen_surfaces_work(input, volumes.works, request.facts.receivers, row_count),
+                 payer_of(volume_plan, first->volume, "surface-volume"));
+    }
     bill.open(scattering_stage(volumes.layouts));
-    for_each("volume-multiple", [&](const VolumeWork& work, PlanEntry* payer) {
-        bill.add(scattering_work(input, work), payer);
-        bill.add_bytes(scattered_row_bytes(work, request.knobs), payer);
-    });
+    for (std::size_t i = 0; i < volumes.works.size(); ++i) {
+        // Walks and rows that light of the sky does not need are those of surfaces.
+        const VolumeLayout& layout = volumes.layouts[i];
+        PlanEntry* const payer = payer_of(volume_plan, layout.volume,
+                                          layout.sees_sky ? "volume-multiple" : "surface-volume");
+        bill.add(scattering_work(input, volumes.works[i]), payer);
+        bill.add_bytes(scattered_row_bytes(volumes.works[i], request.knobs), payer);
+    }
     if (std::ranges::any_of(volumes.layouts, &VolumeLayout::has_nodes)) {
         const VolumeCheckOptions check =
             volume_check_effort(request.scene, volumes.layouts, request.knobs);

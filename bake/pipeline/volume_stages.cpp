@@ -33,8 +33,10 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
                                              const Context& context, BakeResult& result) {
     BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}};
     std::vector<MethodMeasure> measured;
-    auto volumes = bake_volumes({inputs.scene, inputs.rays, baked.plan.layouts, knobs}, context,
-                                result.stages, &measured);
+    const formats::AssetView surfaces = result.asset.view();
+    const ShownSurfaces shown{inputs.scene, inputs.layouts, inputs.receivers, surfaces};
+    auto volumes = bake_volumes({inputs.scene, inputs.rays, baked.plan.layouts, knobs, &shown},
+                                context, result.stages, &measured);
     if (!volumes) {
         return std::move(volumes).error();
     }
@@ -139,6 +141,7 @@ VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
                                        std::span<const VolumeLayout> layouts, const Knobs& knobs) {
     VolumeCheckOptions options;
     options.seed = knobs.seed;
+    options.sees_surfaces = sees_surfaces(layouts);
     if (knobs.check_model) {
         options.probes = 128;
         options.noise_share = 0.25;

@@ -16,6 +16,7 @@ struct VolumeStages {
     const formats::Scene& scene;
     const RayScene& rays;                    ///< surfaces; may be empty
     std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
+    std::span<const RowLayout> layouts;      ///< by material
 };
 
 /// Effort of the check of a bake's volumes: with Knobs::check_model until the noise is small;
@@ -27,11 +28,11 @@ VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
 /// their plan goes by.
 Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quality);
 
-/// Adds a file's volumes to `result`, measures them, and takes what they dim from the light of its
-/// surfaces, which receive what they scatter. With Knobs::error_target they are baked in quality
-/// after quality, `draft` first, until the measured error is below the target or falls by less than
-/// a tenth; the best bake so far is kept, and `result.knobs` has its values. Errors: as
-/// bake_volumes and check_volumes; interrupted.
+/// Adds a file's volumes to `result`, lit by the sky and by the surfaces that are there, measures
+/// them, and takes what they dim from the light of surfaces, which receive what they scatter. With
+/// Knobs::error_target they are baked in quality after quality, `draft` first, until the measured
+/// error is below the target or falls by less than a tenth; the best bake so far is kept, and
+/// `result.knobs` has its values. Errors: as bake_volumes and check_volumes; interrupted.
 formats::Status add_volumes(const VolumeStages& inputs, const Context& context, BakeResult& result);
 
 /// Gives light of volumes the numbers of the file's emitters. `lamps`: those that the file has;

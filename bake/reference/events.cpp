@@ -298,6 +298,7 @@ bool scatter_in_volume(const PathSpace& space, Path& path, glm::vec3 at, std::ui
                        RandomStream& random) {
     const bool keeps_term = space.options.through_volumes && is_on_way_to_sky(path.state);
     path.state = keeps_term ? path.state : after_volume(path.state);
+    path.state.by_volume = path.state.by_volume || keeps_term;
     if (!count_event(space, path) || path.beta == glm::vec3(0) || !is_wanted(space, path.state)) {
         return false;
     }

@@ -44,6 +44,11 @@ struct Crossing {
     bool is_own_mirror = false;  ///< its reflection is left out: see PathOptions::own_mirror
 };
 
+/// Whether a path that reaches the sky here counts.
+inline bool counts_sky(const PathSpace& space, PathState state) {
+    return is_counted(state, space.options.terms, space.options.crossed, space.options.by_volumes);
+}
+
 /// True if light of the scene's own lamps is there and is counted.
 inline bool counts_lamps(const PathSpace& space) {
     return !space.scene.lamps.empty() && has_any(space.options.terms, TermSet::emitters);
@@ -57,7 +62,12 @@ inline bool counts_glow(const PathSpace& space) {
 /// True if the path may still end in a term that is counted. It may meet lamps in any state.
 inline bool is_wanted(const PathSpace& space, PathState state) {
     TermSet terms = space.options.terms;
-    if (space.options.crossed == CrossedLight::left_out && state.crossed) {
+    const bool is_left_out = space.options.crossed == CrossedLight::left_out && state.crossed;
+    const bool may_meet_volume =
+        state.stage == PathState::Stage::camera ||
+        (space.options.through_volumes && state.stage != PathState::Stage::other);
+    const bool is_late = space.options.by_volumes && !state.by_volume && !may_meet_volume;
+    if (is_left_out || is_late) {
         terms = terms & ~TermSet::interreflection;
     }
     return has_any(reachable_terms(state), terms) || counts_lamps(space) || counts_glow(space);

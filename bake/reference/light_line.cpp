@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bake/reference/events.h"
 #include "bake/reference/volume_flight.h"
 
 namespace opaline::bake {
@@ -88,7 +89,7 @@ glm::vec3 pass_line(const PathSpace& space, LightLine line, SurroundingMedia& st
     }
     const bool ends_well =
         line.is_to_sky
-            ? stack.empty() && is_counted(state, space.options.terms, space.options.crossed)
+            ? stack.empty() && counts_sky(space, state)
             : line.triangle == formats::kNone;  // else rounding at an edge
     return ends_well ? passing * pass_space(scene, stack, line.from.position, line.direction,
                                             line.reach, random)
@@ -99,7 +100,7 @@ glm::vec3 see_sky(const PathSpace& space, const RayOrigin& from, glm::vec3 direc
                   SurroundingMedia stack, PathState state, std::uint32_t key,
                   RandomStream& random) {
     if (!space.scene.has_matched_boundary) {
-        return stack.empty() && is_counted(state, space.options.terms, space.options.crossed) &&
+        return stack.empty() && counts_sky(space, state) &&
                        !space.scene.surfaces.is_blocked(from, direction, key)
                    ? pass_volumes(space.scene, from.position, direction, kEndless, random)
                    : glm::vec3(0);

@@ -107,7 +107,7 @@ void reach_sky(const PathSpace& space, Path& path) {
     if (!path.stack.empty()) {
         path.lost = true;
     } else if (is_background ? space.options.terms == TermSet::all
-                             : is_counted(path.state, space.options.terms, space.options.crossed)) {
+                             : counts_sky(space, path.state)) {
         const float weight =
             path.pdf > 0 ? path.pdf / (path.pdf + pdf_light(space.light, path.direction)) : 1.0f;
         path.sky = weight * path.beta;

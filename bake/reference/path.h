@@ -26,6 +26,9 @@ struct PathOptions {
     bool through_volumes = false;
     /// What of `interreflection` counts, by whether it crossed a body unscattered.
     CrossedLight crossed = CrossedLight::counted;
+    /// Of `interreflection` counts what a volume scattered last, toward the eye or, with
+    /// `through_volumes`, toward the first surface or body: light that surfaces sent to volumes.
+    bool by_volumes = false;
 };
 
 /// The surroundings of a path. All outlive the walk.

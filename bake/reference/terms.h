@@ -25,6 +25,9 @@ struct PathState {
     bool in_body = false;         ///< in any body
     bool is_straight = false;     ///< there, and not scattered since it entered
     bool crossed = false;         ///< went through some body without being scattered in it
+    /// A volume scattered it before anything else did, but for the first surface or body where what
+    /// volumes scatter to that counts as its own (PathOptions::through_volumes).
+    bool by_volume = false;
 };
 
 /// Which paths of TermSet::interreflection count, by PathState::crossed.
@@ -55,6 +58,7 @@ constexpr bool is_on_way_to_sky(PathState s) {
 constexpr PathState after_volume(PathState s) {
     if (s.stage == PathState::Stage::camera || s.stage == PathState::Stage::volume) {
         s.stage = PathState::Stage::volume;
+        s.by_volume = true;
         s.scatterings = static_cast<std::uint8_t>(s.scatterings < 2 ? s.scatterings + 1 : 2);
     } else {
         s.stage = PathState::Stage::other;
@@ -122,12 +126,15 @@ constexpr TermSet term_of(PathState s) {
     return TermSet::interreflection;
 }
 
-/// Whether a path that reaches the sky here counts.
-constexpr bool is_counted(PathState s, TermSet terms, CrossedLight crossed) {
+/// Whether a path that reaches the sky here counts. `by_volumes`: of TermSet::interreflection
+/// those of PathState::by_volume alone.
+constexpr bool is_counted(PathState s, TermSet terms, CrossedLight crossed, bool by_volumes) {
     const TermSet term = term_of(s);
     const bool has_met_more = term == TermSet::interreflection;
-    return has_any(term, terms) && (!has_met_more || crossed == CrossedLight::counted ||
-                                    s.crossed == (crossed == CrossedLight::alone));
+    return has_any(term, terms) &&
+           (!has_met_more ||
+            ((crossed == CrossedLight::counted || s.crossed == (crossed == CrossedLight::alone)) &&
+             (s.by_volume || !by_volumes)));
 }
 
 /// All terms that a path to the sky may still end in.

@@ -1,5 +1,4 @@
 #include "bake/scene/inspect_scene.h"
-#include "bake/scene/lobe_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +9,8 @@
 #include "bake/scene/body_shells.h"
 #include "bake/scene/color_contrast.h"
 #include "bake/scene/horizon.h"
-#include "bake/scene/medium_field.h"
 #include "bake/scene/nested_media.h"
+#include "bake/scene/sent_share.h"
 
 namespace opaline::bake {
 namespace {
@@ -139,73 +138,26 @@ void inspect_colors(const Scene& scene, std::uint32_t material, MaterialFacts& f
     const ColorRange color = find_color_range(scene, material);
     facts.brightest_vertex = color.brightest_vertex;
     facts.color_contrast = color.contrast;
-    const auto same = [](formats::Rgb c) { return c.r == c.g && c.g == c.b; };
-    if (const auto& sheet = scene.materials[material].sheet) {
-        facts.is_grey = same(sheet->reflect) && same(sheet->transmit);
-    }
+    facts.is_grey = has_grey_numbers(scene, material);
     if (const auto& medium = scene.materials[material].medium) {
         facts.varies = medium->variation.has_value();
-        facts.is_grey = same(medium->sigma_s) && same(medium->sigma_a) &&
-                        (!facts.varies || is_grey(scene, *medium->variation));
         facts.mirrors = medium->eta != 1;
     }
-}
-
-bool is_grey(formats::Rgb c) {
-    return c.r == c.g && c.g == c.b;
-}
-
-// Whether all that its rows are multiplied by is grey.
-bool shows_grey(const Scene& scene, std::uint32_t material) {
-    const formats::Material& m = scene.materials[material];
-    bool grey = is_grey(m.base_color) && m.base_color_image == formats::kNone && !m.marble;
-    for (const Primitive& p : scene.primitives) {
-        grey = grey && (p.material != material || std::ranges::all_of(p.color, is_grey));
-    }
-    return grey;
-}
-
-// Bound on what the lobe of an opaque material mirrors of even light, whatever its textures say: at
-// the ends of its roughness and colour.
-float most_mirrored(const formats::Material& material) {
-    const formats::GlossRecord record = make_lobe_record(material.gloss);
-    float most = 0;
-    for (const float rough : {0.0f, 0.5f, 1.0f}) {
-        for (const float metallic : {0.0f, material.gloss.metallic}) {
-            const formats::Rgb mirrored =
-                mean_reflectance(formats::make_gloss_surface(record, {1, 1, 1}, metallic,
-                                                             rough * material.gloss.roughness))
-                    .mirrored;
-            most = std::max({most, mirrored.r, mirrored.g, mirrored.b});
-        }
-    }
-    return most;
 }
 
 void inspect_surroundings(const Scene& scene, SceneFacts& facts) {
     Surroundings all{0, true};
     for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
         MaterialFacts& own = facts.material[m];
-        const formats::Material& material = scene.materials[m];
         if (!(own.receivers > 0)) {
             continue;
         }
-        formats::Rgb c = material.base_color;
-        if (material.sheet) {
-            c = c * (material.sheet->reflect + material.sheet->transmit);
-        }
-        const float largest = std::max({c.r, c.g, c.b}) * own.brightest_vertex *
-                              (material.medium ? 1.0f : formats::diffuse_share(material));
-        own.brightest = std::min(1.0, static_cast<double>(largest));
-        const double sent =
-            material.medium || material.sheet
-                ? own.brightest
-                : std::min(1.0, own.brightest + static_cast<double>(most_mirrored(material)));
-        own.textures = find_texture_facts(scene, m, sent);
+        const SentShare sent = find_sent_share(scene, m, own.brightest_vertex);
+        own.brightest = sent.diffuse;
+        own.textures = find_texture_facts(scene, m, sent.all);
         all.area += own.area;
-        all.brightest = std::max(all.brightest, sent);
-        all.is_grey = all.is_grey && shows_grey(scene, m) &&
-                      (own.is_grey || (!material.medium && !material.sheet));
+        all.brightest = std::max(all.brightest, sent.all);
+        all.is_grey = all.is_grey && sent.is_grey;
     }
     for (MaterialFacts& own : facts.material) {
         own.surroundings = all;

@@ -1,6 +1,8 @@
 #include "bake/volumes/bake_volumes.h"
 
 #include <algorithm>
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "bake/volumes/node_worth.h"
 #include "bake/volumes/pack_density.h"
 #include "bake/volumes/phase_table.h"
+#include "bake/volumes/seen_surfaces.h"
 #include "bake/volumes/share_details.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
@@ -46,11 +49,16 @@ std::vector<SparseRow> scatter_node(const VolumeJob& job, const PlacedNodes& nod
     const auto bands = static_cast<std::uint32_t>(nodes.space.bands());
     std::vector<float> dense(terms * bands * nodes.coarse.size());
     const glm::vec3 position = position_of(job, nodes, layout.volume, place.node);
+    WalkReceiver receiver{layout.volume, number, position, layout.walks, terms};
+    receiver.sees_sky = layout.sees_sky && layout.method != VolumeMethod::path_integration;
+    receiver.sees_surfaces = layout.sees_surfaces;
+    if (receiver.sees_sky || receiver.sees_surfaces) {
+        rays += gather_walks(space.walks, receiver, dense);
+    }
     if (layout.method == VolumeMethod::path_integration) {
-        gather_paths(space.paths, {layout.volume, number, position, layout.views, terms}, dense);
-    } else {
-        rays += gather_walks(space.walks, {layout.volume, number, position, layout.walks, terms},
-                             dense);
+        std::vector<float> paths(dense.size());
+        gather_paths(space.paths, {layout.volume, number, position, layout.views, terms}, paths);
+        std::ranges::transform(dense, paths, dense.begin(), std::plus<>());
     }
     scale_rows(nodes.albedo[layout.volume][place.node], bands, nodes.coarse.size(), dense);
     return encode_node_rows(nodes.scattered[number_of(job, layout)], dense, terms, nodes.coarse.n,
@@ -104,19 +112,17 @@ void add_to_pools(const VolumeJob& job, const PlacedNodes& nodes, std::size_t nu
     }
 }
 
-formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given,
-                                                      const PlacedNodes& nodes, LitNodes lit,
-                                                      const Context& context,
-                                                      std::vector<MethodMeasure>* measured,
-                                                      std::uint64_t& rays) {
-    const VolumeWalkSpace walks{nodes.space, given.rays,   nodes.lattices,  nodes.first,
-                                lit.depths,  nodes.coarse, given.knobs.seed};
+formats::Result<formats::SparseRows> gather_node_rows(
+    const VolumeJob& given, const PlacedNodes& nodes, LitNodes lit, const SeenSurfaces* seen,
+    const Context& context, std::vector<MethodMeasure>* measured, std::uint64_t& rays) {
+    const VolumeWalkSpace walks{nodes.space, given.rays,   nodes.lattices,   nodes.first,
+                                lit.depths,  nodes.coarse, given.knobs.seed, seen};
     const PathCells groups = group_cells(nodes.coarse);
     // Paths know one phase function; where there are several, the plan takes walks.
     const VolumePathSpace paths{walks, groups, nodes.space.volumes.front().phase.moments(),
                                 path_lengths(given.knobs.quality)};
     const std::vector<VolumeLayout> layouts = decide_methods(given, paths, measured);
-    const VolumeJob job{given.scene, given.rays, layouts, given.knobs};
+    const VolumeJob job{given.scene, given.rays, layouts, given.knobs, given.surfaces};
     const Scattered space{walks, paths};
     formats::SparseRows rows =
         formats::make_sparse_rows(job.knobs.cubemap_size, job.knobs.code_bits);
@@ -221,12 +227,21 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
     LitNodes lit =
         run_stage(log, "light in volumes", "volume-single: rows",
                   [&](std::uint64_t& rays) { return light_nodes(job, nodes, context, rays); });
+    std::optional<SeenSurfaces> seen;
+    if (job.surfaces != nullptr && sees_surfaces(job.layouts)) {
+        seen.emplace(run_stage(
+            log, "surfaces that volumes see", "surface-volume: rows", [&](std::uint64_t&) {
+                return find_seen_surfaces(*job.surfaces, nodes.space, nodes.coarse,
+                                          nodes.space.bands(), context);
+            }));
+    }
     if (context.cancelled()) {
         return formats::Volumes{};
     }
     auto rows = run_stage(
         log, scattering_stage(job.layouts), "volume-multiple: rows", [&](std::uint64_t& rays) {
-            return gather_node_rows(job, nodes, std::move(lit), context, measured, rays);
+            return gather_node_rows(job, nodes, std::move(lit), seen ? &*seen : nullptr, context,
+                                    measured, rays);
         });
     if (!rows) {
         return std::move(rows).error();

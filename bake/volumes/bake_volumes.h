@@ -14,10 +14,11 @@ namespace opaline::bake {
 /// Memory [bytes] that the attenuated light of all nodes may take while walks look it up.
 inline constexpr double kDepthBytes = 4e9;
 
-/// The volumes of a file: density, nodes and their rows; two stages in the log. Layouts whose
-/// method is automatic are measured first, into `measured` where it is not null. The same bits for
-/// any number of threads. Empty once the context is cancelled. Errors: resource (more nodes, bricks
-/// or coefficients than fit), bad_input (a row that is not finite).
+/// The volumes of a file: density, nodes and their rows; two stages in the log, three where
+/// surfaces send light to them. Layouts whose method is automatic are measured first, into
+/// `measured` where it is not null. The same bits for any number of threads. Empty once the context
+/// is cancelled. Errors: resource (more nodes, bricks or coefficients than fit), bad_input (a row
+/// that is not finite).
 formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
                                                StageLog& log,
                                                std::vector<MethodMeasure>* measured = nullptr);

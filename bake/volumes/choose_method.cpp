@@ -135,8 +135,8 @@ MethodMeasure measure_method(const VolumePathSpace& space, const formats::Sparse
                        static_cast<double>(grid.sample(glm::vec3(node[own])))};
         gather_paths(space, {layout.volume, number, position, layout.views, layout.often_terms},
                      compared[i].paths);
-        const WalkReceiver receiver{layout.volume, number, position, layout.walks,
-                                    layout.often_terms};
+        const WalkReceiver receiver{layout.volume,      number, position, layout.walks,
+                                    layout.often_terms, true,   false};
         gather_walks(walk, receiver, compared[i].walks);
         gather_walks(other, receiver, compared[i].others);
     }

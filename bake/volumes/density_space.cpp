@@ -103,7 +103,7 @@ DensitySpace make_density_space(const formats::Scene& scene) {
     for (const formats::Volume& volume : scene.volumes) {
         space.volumes.push_back(make_volume(volume));
         space.is_grey = space.is_grey && is_grey(space.volumes.back().sigma_t);
-        space.albedo_grey = space.albedo_grey && has_grey_albedo(space.volumes.back());
+        space.light_grey = space.light_grey && has_grey_albedo(space.volumes.back());
     }
     return space;
 }

@@ -54,11 +54,12 @@ struct DensityVolume {
 /// All volumes of a scene, which must outlive it.
 struct DensitySpace {
     std::vector<DensityVolume> volumes;
-    bool is_grey = true;      ///< extinctions of all bands coincide
-    bool albedo_grey = true;  ///< albedos too
+    bool is_grey = true;     ///< extinctions of all bands coincide
+    bool light_grey = true;  ///< albedos too, and light that surfaces send
 
     std::size_t extinction_bands() const { return is_grey ? 1 : 3; }
-    std::size_t bands() const { return is_grey && albedo_grey ? 1 : 3; }
+    /// Of rows.
+    std::size_t bands() const { return is_grey && light_grey ? 1 : 3; }
 };
 DensitySpace make_density_space(const formats::Scene& scene);
 

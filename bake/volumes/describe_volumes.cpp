@@ -38,4 +38,11 @@ EffectDescriptor describe_sent_light(Effect id) {
             .concerns_volumes = true};
 }
 
+EffectDescriptor describe_seen_light(Effect id) {
+    return {.id = id,
+            .name = "surface-volume",
+            .help = "light that surfaces send to smoke or clouds",
+            .concerns_volumes = true};
+}
+
 }  // namespace opaline::bake

@@ -29,7 +29,7 @@ std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::ve
         weight[band] = 1;
     }
     for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
-        const float reach = distance_to_surface(walk.rays, at, direction, traced);
+        const float reach = find_surface(walk.rays, at, direction, traced).distance;
         const Collision hit = sample_flight(walk.space, static_cast<std::size_t>(bands.first), at,
                                             direction, reach, random);
         const float length = hit.happens ? hit.distance : reach;

@@ -64,6 +64,31 @@ double largest_sent_light(const formats::Scene& scene, const formats::Volume& vo
     return brightest(volume).once * (std::isinf(nearest) ? 0 : share * share);
 }
 
+SentShare largest_share_of_surfaces(const formats::Scene& scene) {
+    SentShare most{.is_grey = true};
+    for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
+        float vertex = 0;
+        bool is_there = false;
+        for (const formats::Primitive& primitive : scene.primitives) {
+            if (primitive.material != m || primitive.index.empty()) {
+                continue;
+            }
+            is_there = true;
+            vertex = primitive.color.empty() ? std::max(vertex, 1.0f) : vertex;
+            for (const formats::Rgb& c : primitive.color) {
+                vertex = std::max({vertex, c.r, c.g, c.b});
+            }
+        }
+        if (is_there) {
+            const SentShare own = find_sent_share(scene, m, vertex);
+            most.diffuse = std::max(most.diffuse, own.diffuse);
+            most.all = std::max(most.all, own.all);
+            most.is_grey = most.is_grey && own.is_grey;
+        }
+    }
+    return most;
+}
+
 double largest_glow(const formats::Volume& volume) {
     float most = 0;
     for (const glm::vec3& v : volume.emission.value) {

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "bake/scene/sent_share.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -23,6 +24,9 @@ std::array<double, 3> largest_depth(const formats::Volume& volume);
 /// weighted by its cosines, that a ball of radius R around the volume covers at a distance D of its
 /// middle; D is that of the nearest of the boxes of the scene's primitives. 0 without surfaces.
 double largest_sent_light(const formats::Scene& scene, const formats::Volume& volume);
+
+/// The share of light that surfaces of a scene send on at most, in any band; 0 without surfaces.
+SentShare largest_share_of_surfaces(const formats::Scene& scene);
 
 /// An upper bound [W m^-2 sr^-1] on what a volume sends out by itself along any straight line, over
 /// all bands; 0 of one that does not glow.

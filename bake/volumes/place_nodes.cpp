@@ -10,6 +10,13 @@
 
 namespace opaline::bake {
 
+DensitySpace make_density_space(const formats::Scene& scene,
+                                std::span<const VolumeLayout> layouts) {
+    DensitySpace space = make_density_space(scene);
+    space.light_grey = space.light_grey && std::ranges::none_of(layouts, &VolumeLayout::coloured);
+    return space;
+}
+
 NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout) {
     return layout.glows ? make_node_lattice(volume.density, layout.spacing, volume.emission)
                         : make_node_lattice(volume.density, layout.spacing);
@@ -17,7 +24,7 @@ NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout
 
 PlacedNodes place_nodes(const VolumeJob& job) {
     PlacedNodes nodes;
-    nodes.space = make_density_space(job.scene);
+    nodes.space = make_density_space(job.scene, job.layouts);
     nodes.lattices.resize(job.scene.volumes.size());
     nodes.first.resize(job.scene.volumes.size());
     // Walks collide in all volumes; one without nodes reflects nothing.

@@ -12,6 +12,7 @@
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/plan_volumes.h"
+#include "bake/volumes/seen_surfaces.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -25,7 +26,11 @@ struct VolumeJob {
     const RayScene& rays;  ///< surfaces that stand before the light; may be empty
     std::span<const VolumeLayout> layouts;
     const Knobs& knobs;
+    const ShownSurfaces* surfaces = nullptr;  ///< that send light to volumes; null: black
 };
+
+/// The volumes of a scene, with the rows of layouts.
+DensitySpace make_density_space(const formats::Scene& scene, std::span<const VolumeLayout> layouts);
 
 /// Where the light of a volume is baked.
 NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout);

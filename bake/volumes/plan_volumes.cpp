@@ -22,6 +22,7 @@ namespace {
 
 constexpr std::string_view kGlowEffect = "emitters";  // a volume that glows is one
 constexpr std::string_view kSentEffect = "volume-surface";
+constexpr std::string_view kSeenEffect = "surface-volume";
 
 // Radiance below which an effect is left out: two rows a volume share a quarter of the error.
 double least_bound(const Knobs& knobs) {
@@ -143,6 +144,32 @@ PlanEntry decide_sent(const formats::Scene& scene, const formats::Volume& volume
     return entry;
 }
 
+// Of light 1, surfaces send at most their share to a volume, which scatters at most `once` of it.
+PlanEntry decide_seen(const SentShare& share, double once, const Subject& subject,
+                      const Knobs& knobs) {
+    PlanEntry entry = decide(kSeenEffect, subject, share.all * once, knobs);
+    entry.has_bands = !share.is_grey;
+    if (entry.on) {
+        entry.reason = "the volume scatters what surfaces send to it";
+    } else if (entry.reason.empty()) {
+        entry.reason = "so thin or dark that what surfaces send to it is not seen";
+    }
+    return entry;
+}
+
+// Rows of multiple scattering: light of the sky that the volume scattered before, and of surfaces.
+void lay_out_often(const PlanEntry& often, const PlanEntry& seen, const ScaledPhase& phase,
+                   const Knobs& knobs, VolumeLayout& layout) {
+    layout.sees_sky = often.on;
+    layout.sees_surfaces = seen.on;
+    if (often.on || seen.on) {
+        layout.often_terms = choose_terms(phase, knobs);
+        layout.walks = choose_walks(phase, layout.often_terms, knobs);
+        // Rows of degree l need as many views as they are, twice for good measure.
+        layout.views = std::max(whole(knobs, kVolumePaths), 2 * layout.often_terms);
+    }
+}
+
 // What nodes of a volume scatter of the light of all volumes.
 void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, const Knobs& knobs,
                          VolumeLayout& layout) {
@@ -151,6 +178,11 @@ void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, con
         layout.glow_terms = phase.harmonics();
         layout.glow_walks = choose_walks(phase, layout.glow_terms, knobs);
     }
+}
+
+bool has_effect(std::span<const PlanEntry> plan, std::string_view name) {
+    return std::ranges::any_of(
+        plan, [&](const PlanEntry& entry) { return entry.on && entry.name == name; });
 }
 
 std::string why_dark(const VolumeBrightness& most) {
@@ -179,8 +211,11 @@ bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
 }
 
 bool lights_surfaces(std::span<const PlanEntry> plan) {
-    return std::ranges::any_of(
-        plan, [](const PlanEntry& entry) { return entry.on && entry.name == kSentEffect; });
+    return has_effect(plan, kSentEffect);
+}
+
+bool sees_surfaces(std::span<const PlanEntry> plan) {
+    return has_effect(plan, kSeenEffect);
 }
 
 const char* scattering_stage(std::span<const VolumeLayout> layouts) {
@@ -195,6 +230,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     VolumePlan plan;
     const DensitySpace space = make_density_space(scene);
     const double glow = all_glow(scene, knobs);
+    const SentShare share = largest_share_of_surfaces(scene);
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         const formats::Volume& volume = scene.volumes[v];
         const VolumeBrightness most = brightest(volume);
@@ -213,15 +249,14 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         } else if (once.reason.empty()) {
             once.reason = why_dark(most);
         }
-        if (often.on) {
-            layout.often_terms = often.terms = choose_terms(phase, knobs);
-            layout.walks = choose_walks(phase, layout.often_terms, knobs);
-            // Rows of degree l need as many views as they are, twice for good measure.
-            layout.views = std::max(whole(knobs, kVolumePaths), 2 * layout.often_terms);
-        } else if (often.reason.empty()) {
+        if (!often.on && often.reason.empty()) {
             often.reason =
                 once.on ? "so thin or dark that light is scattered once at most" : why_dark(most);
         }
+        PlanEntry seen = decide_seen(share, most.once, subject, knobs);
+        lay_out_often(often, seen, phase, knobs, layout);
+        often.terms = often.on ? layout.often_terms : 0;
+        seen.terms = seen.on ? layout.often_terms : 0;
         if (glow > 0) {
             scatter_glow_of_all(glow, most.once, phase, knobs, layout);
         }
@@ -234,6 +269,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
             const bool scatters = layout.once_terms > 0 || layout.often_terms > 0;
             entries.push_back(decide_sent(scene, volume, scatters, subject, knobs));
             layout.lights_surfaces = entries.back().on;
+            entries.push_back(std::move(seen));
         }
         for (PlanEntry& entry : entries) {
             plan.entries.push_back(std::move(entry));
@@ -241,6 +277,10 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         if (most.seen >= kLeastBound || layout.has_nodes() || layout.glows) {
             plan.layouts.push_back(layout);
         }
+    }
+    const bool coloured = !share.is_grey && sees_surfaces(plan.layouts);
+    for (VolumeLayout& layout : plan.layouts) {
+        layout.coloured = coloured;
     }
     plan_methods(scene, knobs, plan.layouts, plan.entries);
     for (PlanEntry& entry : plan.entries) {

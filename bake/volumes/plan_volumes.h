@@ -28,12 +28,15 @@ struct VolumeLayout {
     std::uint32_t glow_terms = 0;  ///< K_e: of scattered light of volumes; 0: none is
     std::uint32_t glow_walks = 0;  ///< from each node; 0 where glow_terms is
     bool lights_surfaces = false;  ///< what it scatters to surfaces is baked
+    bool sees_sky = true;          ///< rows of multiple scattering hold light of the sky
+    bool sees_surfaces = false;    ///< and what surfaces send to the volume
+    bool coloured = false;         ///< rows have three bands though all volumes are grey
 
     bool has_nodes() const { return once_terms > 0 || often_terms > 0 || glow_terms > 0; }
 };
 
 struct VolumePlan {
-    std::vector<PlanEntry> entries;     ///< two a volume, one more if it glows and one where
+    std::vector<PlanEntry> entries;     ///< two a volume, one more if it glows and two where
                                         ///< there are surfaces, in order; they belong to no rule
     std::vector<VolumeLayout> layouts;  ///< of volumes that are seen at all
 };
@@ -50,6 +53,14 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
 
 /// Whether surfaces receive light that volumes scatter, by the entries of a plan.
 bool lights_surfaces(std::span<const PlanEntry> plan);
+
+/// Whether volumes receive light that surfaces send, by the entries of a plan.
+bool sees_surfaces(std::span<const PlanEntry> plan);
+
+/// The same by layouts.
+inline bool sees_surfaces(std::span<const VolumeLayout> layouts) {
+    return std::ranges::any_of(layouts, &VolumeLayout::sees_surfaces);
+}
 
 /// The stage of a bake that finds light scattered more than once, by the ways of its layouts.
 const char* scattering_stage(std::span<const VolumeLayout> layouts);

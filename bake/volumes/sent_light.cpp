@@ -198,7 +198,7 @@ SentLight make_sent_light(const formats::Scene& scene, const RayScene& rays,
     const std::uint32_t n = knobs.cubemap_size, m = std::min(n, kSentCubemap);
     SentLight light{rays,
                     baked,
-                    make_density_space(scene),
+                    make_density_space(scene, layouts),
                     std::vector<NodeLattice>(scene.volumes.size()),
                     std::vector<std::uint32_t>(scene.volumes.size(), formats::kNone),
                     std::vector<bool>(scene.volumes.size()),

@@ -50,15 +50,21 @@ void add_light(const VolumeWalkSpace& walk, const Track& track, std::uint32_t vo
                   sum.data() + track.first * walk.cells.size());
 }
 
-// Follows one walk from a point; what it meets is added to `sum`, bands times cells.
-std::uint64_t follow(const VolumeWalkSpace& walk, const Track& track, glm::vec3 at,
+// Follows one walk from a receiver; what it meets is added to `sum`, bands times cells.
+std::uint64_t follow(const VolumeWalkSpace& walk, const WalkReceiver& receiver, const Track& track,
                      glm::vec3 direction, FlightRandom& random, std::span<float> sum) {
     std::uint64_t traced = 0;
+    glm::vec3 at = receiver.position;
     std::array<float, 3> weight{1, 1, 1};
     for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
-        const float reach = distance_to_surface(walk.rays, at, direction, traced);
-        const Collision hit = sample_flight(walk.space, track.band, at, direction, reach, random);
+        const MetSurface met = find_surface(walk.rays, at, direction, traced);
+        const Collision hit =
+            sample_flight(walk.space, track.band, at, direction, met.distance, random);
         if (!hit.happens) {
+            if (met.is_there() && receiver.sees_surfaces && walk.surfaces != nullptr) {
+                add_seen_surface(*walk.surfaces, met, weight, track.first, track.end, random(),
+                                 sum);
+            }
             break;
         }
         at += hit.distance * direction;
@@ -77,7 +83,9 @@ std::uint64_t follow(const VolumeWalkSpace& walk, const Track& track, glm::vec3 
                 w *= kWalkRoulette / most;
             }
         }
-        add_light(walk, track, hit.volume, at, direction, weight, sum);
+        if (receiver.sees_sky) {
+            add_light(walk, track, hit.volume, at, direction, weight, sum);
+        }
         const SampledCosine sampled = turn_walk(own.phase, direction, random);
         for (float& w : weight) {
             w *= sampled.weight;
@@ -108,7 +116,7 @@ std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& rece
             // Bands of one walk share its numbers, so that its noise has no colour.
             FlightRandom random(walk.seed, RandomStage::volume_walk,
                                 (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
-            traced += follow(walk, track, receiver.position, direction, random, sum);
+            traced += follow(walk, receiver, track, direction, random, sum);
         }
         if (receiver.terms > 1) {
             formats::eval_spherical_harmonics({direction.x, direction.y, direction.z},

@@ -9,6 +9,7 @@
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/light_cells.h"
 #include "bake/volumes/node_lattice.h"
+#include "bake/volumes/seen_surfaces.h"
 
 namespace opaline::bake {
 
@@ -21,6 +22,7 @@ struct VolumeWalkSpace {
     const DepthTable& depths;               ///< of the nodes of all volumes
     const LightCells& cells;                ///< of the table
     std::uint64_t seed = 0;
+    const SeenSurfaces* surfaces = nullptr;  ///< that send light to volumes; null: black
 };
 
 /// A walk ends after so many scatterings: only in media thousands of mean free paths deep, where
@@ -30,15 +32,18 @@ inline constexpr std::uint32_t kMostScatterings = 2048;
 /// Where multiple scattering is wanted.
 struct WalkReceiver {
     std::uint32_t volume = 0;
-    std::size_t node = 0;      ///< of the table: the random numbers depend on it
-    glm::vec3 position{0};     ///< [m]
-    std::uint32_t walks = 64;  ///< W
-    std::uint32_t terms = 1;   ///< K: 1, 4, 9, 16 or 25
+    std::size_t node = 0;       ///< of the table: the random numbers depend on it
+    glm::vec3 position{0};      ///< [m]
+    std::uint32_t walks = 64;   ///< W
+    std::uint32_t terms = 1;    ///< K: 1, 4, 9, 16 or 25
+    bool sees_sky = true;       ///< light of the sky that was scattered before counts
+    bool sees_surfaces = true;  ///< and what surfaces send, where walks have them
 };
 
 /// T_k toward every cell (README.md, "Walks"): in-scattered source radiance of light that was
-/// scattered at least once before [1/sr]. `out`: terms * bands * cells numbers, term after term and
-/// band after band, overwritten; bands as DensitySpace::bands. Returns the rays traced.
+/// scattered at least once before, by the volumes or by surfaces [1/sr]. `out`: terms * bands *
+/// cells numbers, term after term and band after band, overwritten; bands as DensitySpace::bands.
+/// Returns the rays traced.
 std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& receiver,
                            std::span<float> out);
 

@@ -9,6 +9,7 @@
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/path_medium.h"
+#include "bake/volumes/place_nodes.h"
 #include "bake/volumes/sent_light.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
@@ -85,6 +86,17 @@ double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
 }
 
+// Of an optical depth from a surface through all volumes, at most: outside of a volume a line meets
+// it as long as from within.
+double steps_to_light(std::span<const VolumeWork> works) {
+    double steps = 0;
+    for (const VolumeWork& work : works) {
+        steps +=
+            work.nodes > 0 ? work.depth_steps / (work.nodes * work.cells) : std::cbrt(work.voxels);
+    }
+    return steps;
+}
+
 // Steps and collisions, from some nodes of the volume.
 void count_by_samples(const DensitySpace& space, const formats::Volume& volume,
                       const NodeLattice& lattice, VolumeWork& work) {
@@ -126,7 +138,7 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
     if (layouts.empty()) {
         return works;
     }
-    const DensitySpace space = make_density_space(scene);
+    const DensitySpace space = make_density_space(scene, layouts);
     for (const VolumeLayout& layout : layouts) {
         const formats::Volume& volume = scene.volumes[layout.volume];
         VolumeWork work;
@@ -193,14 +205,15 @@ Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, dou
                   double rows) {
     constexpr std::uint32_t kFinest = 16;  // dim_surfaces.cpp
     const double cells = texels(std::min(input.knobs.cubemap_size, kFinest));
-    Work sum{0, rows * texels(input.knobs.cubemap_size) * input.rates.encode_grey};
-    for (const VolumeWork& work : works) {
-        // Outside of a volume a line meets it at most as long as from within.
-        const double steps =
-            work.nodes > 0 ? work.depth_steps / (work.nodes * work.cells) : std::cbrt(work.voxels);
-        sum.shared += receivers * cells * steps * input.rates.density_step;
-    }
-    return sum;
+    return {0, rows * texels(input.knobs.cubemap_size) * input.rates.encode_grey +
+                   receivers * cells * steps_to_light(works) * input.rates.density_step};
+}
+
+Work seen_surfaces_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
+                        double rows) {
+    const double cells = texels(coarse_cells(input.knobs));
+    return {0, rows * texels(input.knobs.cubemap_size) * input.rates.encode_grey +
+                   receivers * cells * steps_to_light(works) * input.rates.density_step};
 }
 
 Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
@@ -247,6 +260,13 @@ double volume_memory(const VolumeWork& work, const Knobs& knobs) {
            depths +
            kGrowth * node_candidates(knobs.quality) *
                (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
+}
+
+double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs,
+                            double receivers) {
+    constexpr double kCode = 2;
+    const double bands = works.empty() ? 0 : works.front().bands;
+    return kCode * bands * receivers * texels(coarse_cells(knobs));
 }
 
 }  // namespace opaline::bake

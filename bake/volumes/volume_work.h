@@ -60,6 +60,11 @@ Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, dou
 Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
                      double receivers);
 
+/// What surfaces of `receivers` vertices and `rows` rows send to volumes: as dimming_work, toward
+/// fewer directions.
+Work seen_surfaces_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
+                        double rows);
+
 /// Bytes in the file: of density and nodes; at most of the rows of light that arrives unscattered,
 /// and of those of multiple scattering.
 double volume_density_bytes(const VolumeWork& work);
@@ -68,5 +73,9 @@ double scattered_row_bytes(const VolumeWork& work, const Knobs& knobs);
 
 /// Memory of one volume [bytes]: density, nodes, optical depths of walks, and rows.
 double volume_memory(const VolumeWork& work, const Knobs& knobs);
+
+/// Memory [bytes] of what surfaces of `receivers` vertices send to volumes.
+double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs,
+                            double receivers);
 
 }  // namespace opaline::bake

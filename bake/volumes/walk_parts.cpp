@@ -19,10 +19,10 @@ glm::vec3 even_direction(std::uint32_t i, std::uint32_t count, float u, float v)
     return glm::vec3(glm::dvec3(r * std::cos(angle), r * std::sin(angle), z));
 }
 
-float distance_to_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direction,
-                          std::uint64_t& traced) {
+MetSurface find_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direction,
+                        std::uint64_t& traced) {
     if (rays.is_empty()) {
-        return std::numeric_limits<float>::infinity();
+        return {};
     }
     RayPacket packet = rays_from(from);
     LaneMask lanes{};
@@ -33,7 +33,11 @@ float distance_to_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direct
     packet.tfar[0] = std::numeric_limits<float>::infinity();
     const PacketHits hits = rays.closest(lanes, packet);
     ++traced;
-    return hits.hit[0] != 0 ? hits.distance[0] : std::numeric_limits<float>::infinity();
+    if (hits.hit[0] == 0) {
+        return {};
+    }
+    return {hits.distance[0], hits.primitive[0], hits.first_index[0],
+            hits.u[0],        hits.v[0],         hits.cosine[0] > 0};
 }
 
 SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, FlightRandom& random) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "bake/base/rng.h"
 #include "bake/transport/ray_scene.h"
@@ -42,9 +43,19 @@ class FlightRandom {
 /// Unit direction i of `count` that cover the sphere evenly, turned by two numbers in [0, 1).
 glm::vec3 even_direction(std::uint32_t i, std::uint32_t count, float u, float v);
 
-/// Distance [m] to the first surface, infinite without one; counts rays in `traced`.
-float distance_to_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direction,
-                          std::uint64_t& traced);
+/// The first surface that a walk meets.
+struct MetSurface {
+    float distance = std::numeric_limits<float>::infinity();  ///< [m]; without one infinite
+    std::uint32_t primitive = 0, first_index = 0;  ///< of its triangle, into Primitive::index
+    float u = 0, v = 0;                            ///< weights of its second and third corner
+    bool behind = false;                           ///< from the side its normal points away from
+
+    bool is_there() const { return distance < std::numeric_limits<float>::infinity(); }
+};
+
+/// Counts rays in `traced`.
+MetSurface find_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direction,
+                        std::uint64_t& traced);
 
 /// Turns a unit direction by the phase function; two random numbers.
 SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, FlightRandom& random);

@@ -299,7 +299,8 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
                                {.seconds = kShare * options.seconds,
                                 .seed = options.bake.seed,
                                 .simulated = held_light(effects, result.plan),
-                                .lit_by_volumes = lights_surfaces(result.volume_plan)},
+                                .lit_by_volumes = lights_surfaces(result.volume_plan),
+                                .volumes_see_surfaces = sees_surfaces(result.volume_plan)},
                                context);
         if (!paths) {
             return std::move(paths).error();

@@ -17,6 +17,7 @@ formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
     wanted.seed = options.seed;
     wanted.simulated = options.simulated;
     wanted.lit_by_volumes = options.lit_by_volumes;
+    wanted.volumes_see_surfaces = options.volumes_see_surfaces;
     wanted.max_events = kFewEvents;
     const Clock::time_point start = Clock::now();
     auto traced = trace_model_truth(scene, probes, wanted, context);

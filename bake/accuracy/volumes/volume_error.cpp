@@ -141,13 +141,17 @@ formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
         march_probes(asset.volumes, asset.cubemap_size, scene.origin, probes, context.threads);
     const std::vector<double> through =
         see_through_file(asset.volumes, asset.cubemap_size, scene.origin, probes, context.threads);
+    TermSet terms = TermSet::volume_single | TermSet::volume_multiple;
+    if (options.sees_surfaces) {
+        terms = terms | TermSet::interreflection;
+    }
     const auto truth = trace_volume_truth(
         *reference, probes, options.seed, options.max_events,
         [&](const VolumeTruth& so_far) {
             const MeanSquares sum = sum_up_places(luminance, through, so_far);
             return sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative());
         },
-        context);
+        context, terms);
     if (!truth) {
         return truth.error();
     }

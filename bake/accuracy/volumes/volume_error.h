@@ -46,6 +46,7 @@ struct VolumeCheckOptions {
     double noise = 0.01;                 ///< relative to the truth: enough for any file
     double noise_share = 0.5;            ///< relative to the difference: enough for this file
     std::uint64_t max_events = 1000000;  ///< scatterings and surfaces met, of all rays
+    bool sees_surfaces = false;          ///< the file holds what surfaces send to volumes
 };
 
 /// Errors of `luminance` (march_probes) against a truth of the same probes. Under even light what
@@ -55,10 +56,10 @@ VolumeErrorReport compare_volumes(std::span<const double> luminance,
                                   std::span<const double> through, const VolumeTruth& truth,
                                   std::uint64_t seed);
 
-/// Compares the volumes of `asset`, baked from `scene`, with path tracing. Light that surfaces
-/// reflect onto volumes, or that reaches the eye from surfaces, is on neither side; unscattered
-/// light is on both under even light.
-/// The same bits for any number of threads. Errors: resource, interrupted.
+/// Compares the volumes of `asset`, baked from `scene`, with path tracing. Light that reaches the
+/// eye from surfaces is on neither side, nor, but with VolumeCheckOptions::sees_surfaces, what
+/// these send to volumes; unscattered light is on both under even light. The same bits for any
+/// number of threads. Errors: resource, interrupted.
 formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
                                                  const formats::AssetView& asset,
                                                  const VolumeCheckOptions& options,

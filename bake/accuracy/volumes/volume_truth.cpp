@@ -19,6 +19,7 @@ formats::Result<VolumeTruth> trace_volume_truth(
     }
     PathOptions paths;
     paths.terms = terms;
+    paths.by_volumes = true;
     const auto count = static_cast<std::uint32_t>(kLightPlaces * probes.size());
     const auto sample = [&](std::uint32_t pixel, RandomStream& random) {
         const std::size_t place = pixel / probes.size(), probe = pixel % probes.size();

@@ -14,7 +14,7 @@ namespace opaline::bake {
 
 /// Luminance along the rays of all probes by path tracing of light of some terms, by default what
 /// volumes alone scattered, once or more often: place * probes + probe. The first channel counts;
-/// its variance is that of the luminance.
+/// its variance is that of the luminance. Of TermSet::interreflection what volumes scattered last.
 struct VolumeTruth {
     std::vector<Moments> luminance;
     std::uint32_t samples = 0;  ///< for each ray

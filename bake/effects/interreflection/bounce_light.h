@@ -5,7 +5,7 @@
 
 #include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
-#include "bake/effects/interreflection/coded_rows.h"
+#include "bake/transport/coded_rows.h"
 #include "bake/effects/interreflection/gather_sites.h"
 #include "bake/effects/interreflection/scatterer_light.h"
 #include "bake/plan/effect.h"

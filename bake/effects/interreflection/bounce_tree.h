@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/effects/interreflection/coded_rows.h"
+#include "bake/transport/coded_rows.h"
 #include "bake/effects/interreflection/surface_side.h"
 #include "formats/scene.h"
 

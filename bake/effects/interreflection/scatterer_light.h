@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/effects/interreflection/coded_rows.h"
+#include "bake/transport/coded_rows.h"
 #include "bake/effects/interreflection/scatterers.h"
 #include "bake/plan/effect.h"
 

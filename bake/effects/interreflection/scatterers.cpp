@@ -7,7 +7,7 @@
 #include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
 #include "bake/effects/interreflection/even_choice.h"
-#include "bake/effects/interreflection/surface_albedo.h"
+#include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/texture_footprint.h"

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "bake/effects/interreflection/bounce_rays.h"
-#include "bake/effects/interreflection/surface_albedo.h"
+#include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/effects/interreflection/surface_albedo.h"
+#include "bake/plan/surface_albedo.h"
 
 #include <gtest/gtest.h>
 

@@ -179,7 +179,7 @@ TEST(PlanSentLight, ItIsLeftOutWhereItIsDarkOrFarAwayOrNothingReceivesIt) {
         return plan_volumes(scene, sent_knobs());
     };
     const VolumePlan near = decide(2, 1.5f);
-    ASSERT_EQ(near.entries.size(), 3u);
+    ASSERT_EQ(near.entries.size(), 4u);
     EXPECT_EQ(near.entries[2].name, "volume-surface");
     EXPECT_TRUE(near.entries[2].on);
     EXPECT_TRUE(near.layouts.at(0).lights_surfaces);

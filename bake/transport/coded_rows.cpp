@@ -1,4 +1,4 @@
-#include "bake/effects/interreflection/coded_rows.h"
+#include "bake/transport/coded_rows.h"
 
 #include <cmath>
 

@@ -1,0 +1,150 @@
+#include "bake/volumes/seen_surfaces.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/plan/medium_exitance.h"
+#include "bake/plan/surface_albedo.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kSeenAtOnce = 16;  // vertices that a thread takes at once
+
+// What of each row of a vertex one of its sides shows, without the base colour.
+std::vector<float> weigh_rows(const ShownSurfaces& shown, const formats::PrimitiveRecord& record,
+                              std::size_t primitive, std::size_t vertex, std::size_t side) {
+    std::vector<float> weight(record.terms);
+    if (record.shading != formats::Shading::translucent) {
+        weight[side] = 1;
+        return weight;
+    }
+    const glm::vec3 normal = shown.receivers[primitive].inside[vertex].normal;
+    if (normal == glm::vec3(0)) {
+        return weight;
+    }
+    weight = weigh_rows_of_medium(shown.layouts[shown.scene.primitives[primitive].material],
+                                  record.eta, normal);
+    for (float& w : weight) {
+        w *= std::numbers::inv_pi_v<float>;  // radiosity to radiance
+    }
+    return weight;
+}
+
+std::size_t count_sides(const formats::PrimitiveRecord& record) {
+    return record.shading == formats::Shading::sheet ? 2 : 1;
+}
+
+// Of one vertex toward each cell, by band of extinction.
+std::vector<float> transmittance_of_cells(const DensitySpace& space, const LightCells& cells,
+                                          glm::vec3 position) {
+    std::vector<float> through(space.extinction_bands() * cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const std::array<float, 3> depth = optical_depth(space, position, cells.direction(i));
+        for (std::size_t band = 0; band < space.extinction_bands(); ++band) {
+            through[band * cells.size() + i] = std::exp(-depth[band]);
+        }
+    }
+    return through;
+}
+
+// A row as weighed, in cells; `scratch` is work space.
+std::vector<float> read_cells(const formats::SparseRowsView& rows, const formats::RowRange& range,
+                              std::span<const float> weight, std::size_t vertex, std::uint32_t band,
+                              std::uint32_t cells) {
+    const std::uint32_t n = rows.cubemap_size;
+    std::vector<float> sum(formats::cubemap_texels(n)), row(sum.size()),
+        scratch(std::size_t{n} * n);
+    for (std::uint32_t k = 0; k < weight.size(); ++k) {
+        if (weight[k] == 0) {
+            continue;
+        }
+        formats::decode_row(rows, range, static_cast<std::uint32_t>(vertex * weight.size()) + k,
+                            band, row);
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            sum[i] += weight[k] * row[i];
+        }
+    }
+    for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
+        formats::haar_inverse(std::span(sum).subspan(face * n * n, std::size_t{n} * n), n, scratch);
+    }
+    return reduce_cells(sum, n, cells);
+}
+
+bool is_seen(const formats::Material& material, bool behind) {
+    return !behind || (!material.medium && (material.double_sided || material.sheet));
+}
+
+}  // namespace
+
+SeenSurfaces find_seen_surfaces(const ShownSurfaces& shown, const DensitySpace& space,
+                                const LightCells& cells, std::size_t bands,
+                                const Context& context) {
+    SeenSurfaces seen{shown.scene, shown.layouts, bands, {}, {}};
+    std::size_t count = 0;
+    for (const formats::PrimitiveRecord& record : shown.asset.primitives) {
+        seen.first.push_back(count);
+        count += record.vertex_count * count_sides(record);
+    }
+    seen.rows = CodedRows(count * bands, cells.size());
+    for (std::size_t p = 0; p < shown.asset.primitives.size(); ++p) {
+        const formats::PrimitiveRecord& record = shown.asset.primitives[p];
+        const std::size_t sides = count_sides(record);
+        for_each_block_in_order(
+            record.vertex_count, kSeenAtOnce, context,
+            [&](Range range) {
+                for (std::size_t v = range.begin; v < range.end; ++v) {
+                    const std::vector<float> through =
+                        transmittance_of_cells(space, cells, shown.scene.primitives[p].position[v]);
+                    for (std::size_t side = 0; side < sides; ++side) {
+                        const std::vector<float> weight = weigh_rows(shown, record, p, v, side);
+                        for (std::uint32_t band = 0; band < bands; ++band) {
+                            std::vector<float> row =
+                                read_cells(shown.asset.transport, record.rows(), weight, v,
+                                           record.bands == 1 ? 0 : band, cells.n);
+                            const std::size_t own = space.is_grey ? 0 : band * cells.size();
+                            for (std::size_t i = 0; i < row.size(); ++i) {
+                                row[i] *= through[own + i];
+                            }
+                            seen.rows.set((seen.first[p] + v * sides + side) * bands + band, row);
+                        }
+                    }
+                }
+                return true;
+            },
+            [](Range, bool) {});
+    }
+    return seen;
+}
+
+void add_seen_surface(const SeenSurfaces& seen, const MetSurface& met,
+                      const std::array<float, 3>& weight, std::size_t first, std::size_t end,
+                      float random, std::span<float> sum) {
+    const formats::Primitive& primitive = seen.scene.primitives[met.primitive];
+    const formats::Material& material = seen.scene.materials[primitive.material];
+    if (!is_seen(material, met.behind)) {
+        return;
+    }
+    SurfacePoint point;
+    point.primitive = met.primitive;
+    point.first_index = met.first_index;
+    point.barycentric = {1 - met.u - met.v, met.u, met.v};
+    const formats::Rgb color =
+        eval_surface_albedo(seen.scene, seen.layouts[primitive.material], point);
+    const std::array<float, 3> tint = seen.bands == 1
+                                          ? std::array<float, 3>{formats::luminance(color), 0, 0}
+                                          : std::array<float, 3>{color.r, color.g, color.b};
+    const std::size_t corner = random < point.barycentric.x ? 0 : random < 1 - met.v ? 1 : 2;
+    const std::size_t sides = material.sheet ? 2 : 1, cells = seen.rows.size();
+    const std::size_t vertex = primitive.index[met.first_index + corner];
+    const std::size_t side = material.sheet && met.behind ? 1 : 0;
+    const std::size_t row = (seen.first[met.primitive] + vertex * sides + side) * seen.bands;
+    for (std::size_t band = first; band < end; ++band) {
+        seen.rows.add(row + band, weight[band] * tint[band], sum.subspan(band * cells, cells));
+    }
+}
+
+}  // namespace opaline::bake
