@@ -67,8 +67,12 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
         counts.volume_bytes += volume_memory(work, knobs);
     }
     if (sees_surfaces(layouts)) {
-        counts.volume_bytes +=
-            seen_surfaces_memory(works, knobs, static_cast<double>(counts.scene.vertices));
+        double sides = 0;
+        for (const formats::Primitive& primitive : scene.primitives) {
+            sides += static_cast<double>(primitive.position.size()) *
+                     (scene.materials[primitive.material].sheet ? 2 : 1);
+        }
+        counts.volume_bytes += seen_surfaces_memory(works, knobs, sides);
     }
     for (const formats::CloudLayer& layer : scene.layers) {
         counts.layer_bytes += layer_memory(layer, knobs);

@@ -12,10 +12,11 @@ bool is_grey(formats::Rgb c) {
     return c.r == c.g && c.g == c.b;
 }
 
-// Whether all that its rows are multiplied by is grey.
+// Whether all that its rows are multiplied by is grey, and what an opaque one mirrors.
 bool shows_grey(const formats::Scene& scene, std::uint32_t material) {
     const formats::Material& m = scene.materials[material];
-    bool grey = is_grey(m.base_color) && m.base_color_image == formats::kNone && !m.marble;
+    bool grey = is_grey(m.base_color) && m.base_color_image == formats::kNone && !m.marble &&
+                (m.medium || m.sheet || is_grey(m.gloss.specular_color));
     for (const formats::Primitive& p : scene.primitives) {
         grey = grey && (p.material != material ||
                         std::ranges::all_of(p.color, [](formats::Rgb c) { return is_grey(c); }));

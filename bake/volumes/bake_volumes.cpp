@@ -205,6 +205,13 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
                               " GB of memory",
                           "raise --volume-spacing, or bake in a lower quality");
     }
+    const bool sees = job.surfaces != nullptr && sees_surfaces(job.layouts);
+    if (sees && seen_surfaces_bytes(*job.surfaces, nodes.space.bands(), nodes.coarse.size()) >
+                    kDepthBytes) {
+        return make_error(ErrorKind::resource, "", "surface-volume",
+                          "light of so many vertices takes more memory than walks may have",
+                          "name the other effects in --effects, or make the meshes coarser");
+    }
     for (const VolumeLayout& layout : job.layouts) {
         formats::VolumeRecord record;
         const DensityVolume& own = nodes.space.volumes[layout.volume];
@@ -228,7 +235,7 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
         run_stage(log, "light in volumes", "volume-single: rows",
                   [&](std::uint64_t& rays) { return light_nodes(job, nodes, context, rays); });
     std::optional<SeenSurfaces> seen;
-    if (job.surfaces != nullptr && sees_surfaces(job.layouts)) {
+    if (sees) {
         seen.emplace(run_stage(
             log, "surfaces that volumes see", "surface-volume: rows", [&](std::uint64_t&) {
                 return find_seen_surfaces(*job.surfaces, nodes.space, nodes.coarse,

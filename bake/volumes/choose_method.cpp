@@ -78,6 +78,8 @@ void plan_methods(const formats::Scene& scene, const Knobs& knobs, std::span<Vol
             layout.method = asked;
             why = asked == VolumeMethod::walks ? "random walks, as --volume-method says"
                                                : "path integration, as --volume-method says";
+        } else if (layout.sees_surfaces) {
+            why = "random walks, which find the light of surfaces too";
         } else if (!works.empty()) {
             double times = 0;
             layout.method = choose_by_work(works[i], times);

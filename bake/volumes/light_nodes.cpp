@@ -33,8 +33,10 @@ Lit light_node(const VolumeJob& job, const PlacedNodes& nodes, const NodePlace& 
         lit.coarse.insert(lit.coarse.end(), reduced.begin(), reduced.end());
     }
     // The rows of a node have as many bands as any of them needs.
-    while (fine.size() < nodes.space.bands() * cells) {
-        fine.insert(fine.end(), fine.begin(), fine.begin() + static_cast<std::ptrdiff_t>(cells));
+    const std::size_t known = fine.size();
+    fine.resize(nodes.space.bands() * cells);
+    for (std::size_t i = known; i < fine.size(); ++i) {
+        fine[i] = fine[i - cells];
     }
     const auto row_bands = static_cast<std::uint32_t>(nodes.space.bands());
     scale_rows(nodes.albedo[place.layout->volume][place.node], row_bands, cells, fine);

@@ -24,9 +24,10 @@ constexpr std::string_view kGlowEffect = "emitters";  // a volume that glows is 
 constexpr std::string_view kSentEffect = "volume-surface";
 constexpr std::string_view kSeenEffect = "surface-volume";
 
-// Radiance below which an effect is left out: two rows a volume share a quarter of the error.
+// Radiance below which an effect is left out: three decisions of a volume share a quarter of the
+// error.
 double least_bound(const Knobs& knobs) {
-    return knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 8) : kLeastBound;
+    return knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 12) : kLeastBound;
 }
 
 // Light that was scattered before reaches a node nearly from all around, but for its edge: degree l
@@ -129,7 +130,7 @@ PlanEntry decide_glow(const formats::Volume& volume, const Subject& subject, con
     return entry;
 }
 
-// `scatters`: nodes of the volume have light of the sky.
+// `scatters`: nodes of the volume have light.
 PlanEntry decide_sent(const formats::Scene& scene, const formats::Volume& volume, bool scatters,
                       const Subject& subject, const Knobs& knobs) {
     PlanEntry entry = decide(kSentEffect, subject, largest_sent_light(scene, volume), knobs);

@@ -74,32 +74,46 @@ std::vector<float> read_cells(const formats::SparseRowsView& rows, const formats
     return reduce_cells(sum, n, cells);
 }
 
-bool is_seen(const formats::Material& material, bool behind) {
-    return !behind || (!material.medium && (material.double_sided || material.sheet));
+// Whether a side that a walk meets has a row; `normal`: of the vertex.
+bool is_seen(const formats::Material& material, bool behind, float along_normal) {
+    if (material.sheet) {
+        return true;
+    }
+    // Triangles of double-sided surfaces may be wound against their normals.
+    return material.double_sided && !material.medium ? along_normal < 0 : !behind;
 }
 
 }  // namespace
+
+double seen_surfaces_bytes(const ShownSurfaces& shown, std::size_t bands, std::size_t cells) {
+    double sides = 0;
+    for (const formats::PrimitiveRecord& record : shown.asset.primitives) {
+        sides +=
+            static_cast<double>(record.vertex_count) * static_cast<double>(count_sides(record));
+    }
+    return sizeof(std::int16_t) * sides * static_cast<double>(bands) * static_cast<double>(cells);
+}
 
 SeenSurfaces find_seen_surfaces(const ShownSurfaces& shown, const DensitySpace& space,
                                 const LightCells& cells, std::size_t bands,
                                 const Context& context) {
     SeenSurfaces seen{shown.scene, shown.layouts, bands, {}, {}};
-    std::size_t count = 0;
+    std::size_t count = 0, done = 0;
     for (const formats::PrimitiveRecord& record : shown.asset.primitives) {
-        seen.first.push_back(count);
+        seen.primitive.push_back({count, count_sides(record)});
         count += record.vertex_count * count_sides(record);
     }
     seen.rows = CodedRows(count * bands, cells.size());
     for (std::size_t p = 0; p < shown.asset.primitives.size(); ++p) {
         const formats::PrimitiveRecord& record = shown.asset.primitives[p];
-        const std::size_t sides = count_sides(record);
+        const SeenSurfaces::Rows own_rows = seen.primitive[p];
         for_each_block_in_order(
             record.vertex_count, kSeenAtOnce, context,
             [&](Range range) {
                 for (std::size_t v = range.begin; v < range.end; ++v) {
                     const std::vector<float> through =
                         transmittance_of_cells(space, cells, shown.scene.primitives[p].position[v]);
-                    for (std::size_t side = 0; side < sides; ++side) {
+                    for (std::size_t side = 0; side < own_rows.sides; ++side) {
                         const std::vector<float> weight = weigh_rows(shown, record, p, v, side);
                         for (std::uint32_t band = 0; band < bands; ++band) {
                             std::vector<float> row =
@@ -109,39 +123,46 @@ SeenSurfaces find_seen_surfaces(const ShownSurfaces& shown, const DensitySpace& 
                             for (std::size_t i = 0; i < row.size(); ++i) {
                                 row[i] *= through[own + i];
                             }
-                            seen.rows.set((seen.first[p] + v * sides + side) * bands + band, row);
+                            seen.rows.set(
+                                (own_rows.first + v * own_rows.sides + side) * bands + band, row);
                         }
                     }
                 }
                 return true;
             },
-            [](Range, bool) {});
+            [&](Range range, bool) {
+                done += range.end - range.begin;
+                if (context.on_progress) {
+                    context.on_progress(
+                        {"surfaces that volumes see", done, shown.asset.position.size()});
+                }
+            });
     }
     return seen;
 }
 
-void add_seen_surface(const SeenSurfaces& seen, const MetSurface& met,
+void add_seen_surface(const SeenSurfaces& seen, const MetSurface& met, glm::vec3 direction,
                       const std::array<float, 3>& weight, std::size_t first, std::size_t end,
                       float random, std::span<float> sum) {
     const formats::Primitive& primitive = seen.scene.primitives[met.primitive];
     const formats::Material& material = seen.scene.materials[primitive.material];
-    if (!is_seen(material, met.behind)) {
-        return;
-    }
     SurfacePoint point;
     point.primitive = met.primitive;
     point.first_index = met.first_index;
     point.barycentric = {1 - met.u - met.v, met.u, met.v};
+    const std::size_t corner = random < point.barycentric.x ? 0 : random < 1 - met.v ? 1 : 2;
+    const std::size_t vertex = primitive.index[met.first_index + corner];
+    if (!is_seen(material, met.behind, glm::dot(direction, primitive.normal[vertex]))) {
+        return;
+    }
     const formats::Rgb color =
         eval_surface_albedo(seen.scene, seen.layouts[primitive.material], point);
     const std::array<float, 3> tint = seen.bands == 1
                                           ? std::array<float, 3>{formats::luminance(color), 0, 0}
                                           : std::array<float, 3>{color.r, color.g, color.b};
-    const std::size_t corner = random < point.barycentric.x ? 0 : random < 1 - met.v ? 1 : 2;
-    const std::size_t sides = material.sheet ? 2 : 1, cells = seen.rows.size();
-    const std::size_t vertex = primitive.index[met.first_index + corner];
-    const std::size_t side = material.sheet && met.behind ? 1 : 0;
-    const std::size_t row = (seen.first[met.primitive] + vertex * sides + side) * seen.bands;
+    const SeenSurfaces::Rows& own = seen.primitive[met.primitive];
+    const std::size_t side = own.sides == 2 && met.behind ? 1 : 0, cells = seen.rows.size();
+    const std::size_t row = (own.first + vertex * own.sides + side) * seen.bands;
     for (std::size_t band = first; band < end; ++band) {
         seen.rows.add(row + band, weight[band] * tint[band], sum.subspan(band * cells, cells));
     }

@@ -31,25 +31,33 @@ struct ShownSurfaces {
 struct SeenSurfaces {
     const formats::Scene& scene;
     std::span<const RowLayout> layouts;
-    std::size_t bands = 1;           ///< of rows of volumes: 1 or 3
-    std::vector<std::size_t> first;  ///< by primitive: its first row, in sides
-    /// Of each vertex, two for a sheet, front and back, band after band: radiance without the base
-    /// colour, per unit of light [W m^-2] from each cell.
+    std::size_t bands = 1;  ///< of rows of volumes: 1 or 3
+    /// By primitive: its first row, and rows of a vertex: two for a sheet, front and back.
+    struct Rows {
+        std::size_t first = 0, sides = 1;
+    };
+    std::vector<Rows> primitive;
+    /// Of each side, band after band: radiance without the base colour, per unit of light [W m^-2]
+    /// from each cell.
     CodedRows rows;
 };
+
+/// Memory [bytes] of SeenSurfaces::rows.
+double seen_surfaces_bytes(const ShownSurfaces& shown, std::size_t bands, std::size_t cells);
 
 /// What leaves each vertex to all sides alike: of opaque and thin-walled surfaces their rows, of
 /// media the mean over views of what crosses the boundary. Light of the sky comes to a vertex
 /// through the volumes before it, as dim_surfaces has it. `bands`: of the result, 3 where any row
-/// has three. Empty once the context is cancelled.
+/// has three. Incomplete once the context is cancelled.
 SeenSurfaces find_seen_surfaces(const ShownSurfaces& shown, const DensitySpace& space,
                                 const LightCells& cells, std::size_t bands, const Context& context);
 
-/// Adds to `sum`, band after band of cells, the radiance of the surface that a walk has met, times
-/// `weight`, in the bands [first, end): that of one corner of the triangle, drawn by `random` in
-/// [0, 1), under the colour of the point. Backs of surfaces that show none, and the inside of
-/// bodies, are black.
-void add_seen_surface(const SeenSurfaces& seen, const MetSurface& met,
+/// Adds to `sum`, band after band of cells, the radiance of the surface that a walk has met in its
+/// `direction`, times `weight`, in the bands [first, end): that of one corner of the triangle,
+/// drawn by `random` in [0, 1), under the colour of the point. The inside of bodies and what is
+/// behind opaque surfaces is black, also of double-sided ones, whose rows are those of the side of
+/// their normals.
+void add_seen_surface(const SeenSurfaces& seen, const MetSurface& met, glm::vec3 direction,
                       const std::array<float, 3>& weight, std::size_t first, std::size_t end,
                       float random, std::span<float> sum);
 

@@ -21,6 +21,13 @@ inline bool is_scattered_often(const RowLayout&, std::span<const PlanEntry> deci
         return entry.on && entry.name == "volume-multiple";
     });
 }
+// Light of surfaces has rows and walks of its own.
+inline bool sees_surface(const PlanEntry& entry) {
+    return entry.on && entry.name == "surface-volume";
+}
+inline bool has_rows_by_view(const RowLayout& layout, std::span<const PlanEntry> decisions) {
+    return is_scattered_often(layout, decisions) || std::ranges::any_of(decisions, sees_surface);
+}
 // Whether a volume's light that is scattered more than once takes that way, or may.
 inline bool goes_by(std::span<const PlanEntry> decisions, VolumeMethod method) {
     return std::ranges::any_of(decisions, [&](const PlanEntry& entry) {
@@ -29,7 +36,7 @@ inline bool goes_by(std::span<const PlanEntry> decisions, VolumeMethod method) {
     });
 }
 inline bool is_walked(const RowLayout&, std::span<const PlanEntry> decisions) {
-    return goes_by(decisions, VolumeMethod::walks);
+    return goes_by(decisions, VolumeMethod::walks) || std::ranges::any_of(decisions, sees_surface);
 }
 inline bool follows_paths(const RowLayout&, std::span<const PlanEntry> decisions) {
     return goes_by(decisions, VolumeMethod::path_integration);
@@ -185,7 +192,7 @@ inline constexpr KnobSpec kVolumeTerms{
                .words = "moment g^l of Henyey and Greenstein's phase function",
                .rate_by_cosine = volume_knobs::rate_of_degree,
                .value = volume_knobs::degree_of},
-    .matters = volume_knobs::is_scattered_often,
+    .matters = volume_knobs::has_rows_by_view,
     .why_idle = volume_knobs::kWhyOnce};
 
 /// Mean numbers of coefficients of the rows of a node; the face averages are there in any case.

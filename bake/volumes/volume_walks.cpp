@@ -62,8 +62,8 @@ std::uint64_t follow(const VolumeWalkSpace& walk, const WalkReceiver& receiver, 
             sample_flight(walk.space, track.band, at, direction, met.distance, random);
         if (!hit.happens) {
             if (met.is_there() && receiver.sees_surfaces && walk.surfaces != nullptr) {
-                add_seen_surface(*walk.surfaces, met, weight, track.first, track.end, random(),
-                                 sum);
+                add_seen_surface(*walk.surfaces, met, direction, weight, track.first, track.end,
+                                 random(), sum);
             }
             break;
         }

@@ -86,6 +86,10 @@ double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
 }
 
+bool takes_walks(const VolumeWork& work) {
+    return work.method != VolumeMethod::path_integration || work.sees_surfaces;
+}
+
 // Of an optical depth from a surface through all volumes, at most: outside of a volume a line meets
 // it as long as from within.
 double steps_to_light(std::span<const VolumeWork> works) {
@@ -157,6 +161,7 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
             work.walks = layout.walks;
             work.paths = path_count(layout, knobs);
             work.method = layout.method;
+            work.sees_surfaces = layout.sees_surfaces;
             count_by_samples(space, volume, lattice, work);
         }
         works.push_back(work);
@@ -175,9 +180,13 @@ double count_path_scatterings(const VolumeWork& work) {
 double count_in_scatterings(std::span<const VolumeWork> works) {
     double sum = 0;
     for (const VolumeWork& work : works) {
-        sum += kStepScattering * work.depth_steps + (work.method == VolumeMethod::path_integration
-                                                         ? count_path_scatterings(work)
-                                                         : count_walk_scatterings(work));
+        sum += kStepScattering * work.depth_steps;
+        if (work.method == VolumeMethod::path_integration) {
+            sum += count_path_scatterings(work);
+        }
+        if (takes_walks(work)) {
+            sum += count_walk_scatterings(work);
+        }
     }
     return sum;
 }
@@ -191,14 +200,17 @@ Work attenuation_work(const CostInput& input, const VolumeWork& work) {
 Work scattering_work(const CostInput& input, const VolumeWork& work) {
     const double texel = texels(input.knobs.cubemap_size) * work.bands;
     const double rows = work.nodes * work.terms;
+    Work sum{0, rows * texel * input.rates.node_texel};
     if (work.method == VolumeMethod::path_integration) {
-        return {0, work.path_steps * kStepsOfPathStep * input.rates.density_step +
-                       rows * texel * input.rates.node_texel};
+        sum.shared += work.path_steps * kStepsOfPathStep * input.rates.density_step;
     }
-    return {0, work.tracks * (work.flights * input.rates.volume_flight +
-                              work.collisions * work.walk_cells * input.rates.scattered_cell) +
-                   rows * work.walks * work.tracks * work.walk_cells * input.rates.gather_entry +
-                   rows * texel * input.rates.node_texel};
+    if (takes_walks(work)) {
+        sum.shared +=
+            work.tracks * (work.flights * input.rates.volume_flight +
+                           work.collisions * work.walk_cells * input.rates.scattered_cell) +
+            rows * work.walks * work.tracks * work.walk_cells * input.rates.gather_entry;
+    }
+    return sum;
 }
 
 Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
@@ -262,11 +274,10 @@ double volume_memory(const VolumeWork& work, const Knobs& knobs) {
                (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
 }
 
-double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs,
-                            double receivers) {
+double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs, double sides) {
     constexpr double kCode = 2;
     const double bands = works.empty() ? 0 : works.front().bands;
-    return kCode * bands * receivers * texels(coarse_cells(knobs));
+    return kCode * bands * sides * texels(coarse_cells(knobs));
 }
 
 }  // namespace opaline::bake

@@ -27,8 +27,9 @@ struct VolumeWork {
     double path_steps = 0;
     /// That is billed: VolumeMethod::automatic as walks, which no other way exceeds then.
     VolumeMethod method = VolumeMethod::walks;
-    double terms = 0;  ///< rows of multiple scattering of each node
-    double bands = 1;  ///< of a row
+    bool sees_surfaces = false;  ///< walks find light of surfaces, whatever the method is
+    double terms = 0;            ///< rows of multiple scattering of each node
+    double bands = 1;            ///< of a row
 };
 
 /// Counts the work of each layout, in order. Numbers of steps and collisions are means over some
@@ -74,8 +75,7 @@ double scattered_row_bytes(const VolumeWork& work, const Knobs& knobs);
 /// Memory of one volume [bytes]: density, nodes, optical depths of walks, and rows.
 double volume_memory(const VolumeWork& work, const Knobs& knobs);
 
-/// Memory [bytes] of what surfaces of `receivers` vertices send to volumes.
-double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs,
-                            double receivers);
+/// Memory [bytes] of what surfaces of so many `sides` of vertices send to volumes.
+double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs, double sides);
 
 }  // namespace opaline::bake

@@ -12,6 +12,8 @@ using formats::kBrickSide;
 using formats::kBrickVoxels;
 using formats::kNoBrick;
 
+// Of a code of density: sums over any table stay finite, and everything is opaque.
+constexpr float kMostScale = 1e20f;
 constexpr std::int64_t kTile = 48;  // columns along its edge
 // Bricks that reach beyond a tile are added there, too, and not read.
 constexpr std::int64_t kBeyond = kBrickSide;
@@ -61,7 +63,7 @@ DensityPlane density_plane(const VolumeLattice& lattice, const ColumnFrame& fram
                          std::size_t count_v) {
         const std::uint32_t brick = block.number[neighbour | above];
         if (brick == kNoBrick) return;
-        const float scale = weight * lattice.density_scale[brick];
+        const float scale = std::min(weight * lattice.density_scale[brick], kMostScale);
         const std::uint16_t* const code = lattice.density.data() + brick * kBrickVoxels +
                                           layer % kBrickSide * kVoxelStride[frame.along];
         for (std::size_t j = 0; j < count_v; ++j) {

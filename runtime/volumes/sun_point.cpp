@@ -1,5 +1,6 @@
 #include "runtime/volumes/sun_point.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/volumes/volume_source.h"
@@ -12,6 +13,14 @@ using formats::kNoBrick;
 using formats::Rgb;
 
 constexpr float kMost = 1e6f;  // of a sum that lowers light; NaN lowers nothing
+
+// Whether a point that stands in no next brick is on an edge: bricks that meet there have other
+// neighbours each, and must agree.
+bool is_common(const std::array<std::uint32_t, 3>& place, std::uint32_t boxes) {
+    const auto on_faces =
+        std::ranges::count_if(place, [&](std::uint32_t x) { return x % boxes == 0; });
+    return on_faces > 1 && std::ranges::count(place, boxes) > 0;
+}
 
 // Those next to a point along each axis, lower ones first.
 std::array<std::size_t, 6> find_next(const SunColumns& volume, const BrickSurroundings& around,
@@ -82,7 +91,10 @@ SunPoint make_sun_point(const SunColumns& volume, const BrickSurroundings& aroun
     const std::size_t side = boxes + 1;
     SunPoint point;
     point.column = around.brick * volume.points() + (place[2] * side + place[1]) * side + place[0];
-    point.next = find_next(volume, around, place, point.column);
+    point.next.fill(kNoPoint);
+    if (!is_common(place, boxes)) {
+        point.next = find_next(volume, around, place, point.column);
+    }
     point.world = {world(0), world(4), world(8)};
     const NodeCell box = node_cell(volume.lattice, at);
     point.node = nodes_of_cell(volume.lattice, around.brick, box.number);

@@ -143,6 +143,19 @@ TEST(SeenSurfaces, NothingIsSentByBlackOnesOrToSmokeTooThinToBeSeen) {
     EXPECT_FALSE(is_on(alone));
 }
 
+// What a roof shows below it is not the sun above it.
+TEST(SeenSurfaces, BacksOfDoubleSidedRoofsSendNothing) {
+    Scene scene = make_smoky_floor({0.8f, 0.8f, 0.8f}, 2, 0.9f, 0, -0.8f);
+    bake::BakeOptions options = seen_bake();
+    options.quality = bake::Quality::draft;
+    const bake::BakeResult single_sided = bake_scene(scene, options);
+    scene.materials[0].double_sided = true;
+    const bake::BakeResult double_sided = bake_scene(scene, options);
+    EXPECT_EQ(single_sided.asset.volumes.rows.code8, double_sided.asset.volumes.rows.code8);
+    EXPECT_EQ(single_sided.asset.volumes.rows.average_code,
+              double_sided.asset.volumes.rows.average_code);
+}
+
 TEST(SeenSurfaces, AnyNumberOfThreadsGivesTheSameBits) {
     const Scene scene = make_smoke_between();
     bake::BakeOptions options = seen_bake();

@@ -74,19 +74,26 @@ void append_thinned(std::span<const std::uint32_t> some, std::size_t most,
     }
 }
 
-// Cells to cut: those at edges of everything that is seen first.
+// Cells to cut: those at edges of everything that is seen first. Cells whose row and column add up
+// to an even number, and the others, have lists of their own, so that the cell's own ray has no say
+// in how much a list is thinned either: the four beside it are of the other kind.
 std::vector<std::uint32_t> choose_cells(std::span<const BounceEnd> ends, const BounceGrid& grid) {
-    std::vector<std::uint32_t> outlines, inner, chosen;
+    std::array<std::vector<std::uint32_t>, 2> outlines, inner;
     for (std::uint32_t row = 0; row < grid.side; ++row) {
         for (std::uint32_t column = 0; column < grid.side; ++column) {
             const Change change = change_around(ends, grid.side, row, column);
             if (change != Change::none) {
-                (change == Change::nothing ? outlines : inner).push_back(row * grid.side + column);
+                auto& lists = change == Change::nothing ? outlines : inner;
+                lists[(row + column) % 2].push_back(row * grid.side + column);
             }
         }
     }
-    append_thinned(outlines, grid.most_cut(), chosen);
-    append_thinned(inner, grid.most_cut() - chosen.size(), chosen);
+    std::vector<std::uint32_t> chosen;
+    for (std::size_t kind = 0; kind < 2; ++kind) {
+        const std::size_t most = grid.most_cut() / 2, before = chosen.size();
+        append_thinned(outlines[kind], most, chosen);
+        append_thinned(inner[kind], most - (chosen.size() - before), chosen);
+    }
     return chosen;
 }
 

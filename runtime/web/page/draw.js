@@ -30,6 +30,7 @@ const Draw = (() => {
       const wanted = [width, height, tileWidth, tileHeight, across].join();
       if (targets !== null && targets.made === wanted) return;
       if (targets !== null) Targets.free(gl, targets);
+      targets = null;
       size = [width, height];
       targets = { ...Targets.make(gl, size, [tileWidth, tileHeight], across, layer !== null, volumes !== null),
                   made: wanted };

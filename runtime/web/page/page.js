@@ -138,6 +138,7 @@ opaline.page = (() => {
     const isMoving = now - moved < kRest;
     if (isMoving && now - lastFrame > kSlowFrame && now - lastFrame < 1000) {
       coarseness = Math.min(coarseness * 2, 4);
+      drawn = 0;
     }
     lastFrame = now;
     const ratio = Math.min(window.devicePixelRatio || 1, 2);
@@ -153,8 +154,17 @@ opaline.page = (() => {
       coarseness = 1;
       drawn = 0;
     }
-    if (drawn <= kTiles.length) drawStep(drawn++, Math.ceil(width / coarse), Math.ceil(height / coarse));
-    draw.present(state.exposure);
+    try {
+      // Tiles wait until nothing changes.
+      if (drawn === 0 || (!isMoving && drawn <= kTiles.length)) {
+        drawStep(drawn, Math.ceil(width / coarse), Math.ceil(height / coarse));
+        ++drawn;
+      }
+      draw.present(state.exposure);
+    } catch (error) {
+      fail(error);
+      return;
+    }
     say("");
     if (drawn <= kTiles.length || coarse > 1) request();
   }

@@ -1,6 +1,8 @@
 "use strict";
 // Density between points of volumes and suns: the steps of runtime/volumes/sun_columns.cpp and column_sweep.cpp.
 const VolumeColumns = (() => {
+  // Of a code of density: sums over any table stay finite, and everything is opaque.
+  const kMostScale = 1e20;
   const kNone = 0xffffffff, kVoxelStride = [1, 8, 64];
 
   // Boxes between points along a brick's edge.
@@ -48,7 +50,7 @@ const VolumeColumns = (() => {
     const add = (neighbour, first, countU, countV) => {
       const brick = block[neighbour | above];
       if (brick === kNone) return;
-      const number = volume.firstBrickNumber + brick, scale = weight * volumes.scale[number];
+      const number = volume.firstBrickNumber + brick, scale = Math.min(weight * volumes.scale[number], kMostScale);
       const code = 512 * number + layer % 8 * kVoxelStride[along];
       for (let j = 0; j < countV; ++j) {
         for (let i = 0; i < countU; ++i) {

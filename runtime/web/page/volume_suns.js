@@ -2,6 +2,7 @@
 // How much of suns' light reaches the points of volumes: the steps of runtime/volumes/sun_light.cpp and sun_point.cpp.
 const VolumeSuns = (() => {
   const { kNone, boxesOf, brickAt, prepare } = VolumeColumns;
+  const kMostDepth = 1e15, tame = (x, most) => x > 0 ? Math.min(x, most) : 0;
 
   // Shares of suns' light at a point of a brick as rows have them: linear between nodes.
   function reachAt(volumes, volume, brick, at, reach, suns, sun) {
@@ -44,7 +45,7 @@ const VolumeSuns = (() => {
       const x = Math.abs(power * rise), size = 1 + x + 0.5 * x * x;
       sum += (power * rise > 0 ? size : 1 / size) - 1;
     }
-    return 1 / (1 + Math.min(Math.max(0, sum / 12), 1e6));
+    return 1 / (1 + tame(sum / 12, 1e6));
   }
 
   const luminance = c => 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];
@@ -61,7 +62,8 @@ const VolumeSuns = (() => {
     const firstOf = brick => part.first - part.suns - (brick + 1) * points * stride;
     const albedo = luminance(volume.albedo);
 
-    function lightPoint(brick, place, point, below) {
+    // `isCommon`: bricks that meet there have other neighbours each, and must agree.
+    function lightPoint(brick, place, point, below, isCommon) {
       const at = place.map(x => x * 8 / boxes), index = at.map((x, a) => 8 * (volume.firstBrick[a] + cells[brick][a]) + x);
       const world = [0, 4, 8].map(row => m[row] * index[0] + m[row + 1] * index[1] + m[row + 2] * index[2] + m[row + 3]);
       const own = brick * points + point, to = 4 * (firstOf(brick) + point * stride);
@@ -70,16 +72,17 @@ const VolumeSuns = (() => {
         columns.forEach((ofSun, w) => {
           if (ofSun[s] === null) return;
           const c = w === v ? ofSun[s][own] : VolumeColumns.from(volumes, w, ofSun[s], suns[s], world);
-          for (let b = 0; b < 3; ++b) depth[b] += c * volumes.list[w].extinction[b];
+          for (let b = 0; b < 3; ++b) depth[b] += tame(c * volumes.list[w].extinction[b], kMostDepth);
         });
-        const rises = columns[v][s] === null ? [] : risesAt(columns[v][s], brick * points, place, boxes, own, below);
+        const rises = columns[v][s] === null || isCommon ? [] : risesAt(columns[v][s], brick * points, place, boxes, own, below);
         for (let b = 0; b < 3; ++b) {
           const share = Math.min(Math.exp(-depth[b]), (volume.bands === 1 ? 2 : 1) * rows[b]);
           const sent = values[4 * (part.first - part.suns + s) + b];
           for (let j = 0; j < part.sunTerms; ++j) {
             const power = part.sunPower[j] * volume.albedo[b];
             const lowered = loweringOf(rises, volume.extinction[b] * (1 + part.sunPower[j] * albedo));
-            values[to + 4 * (j * part.suns + s) + b] = lowered * sent * share * (power === 0 ? 1 : share ** power);
+            values[to + 4 * (j * part.suns + s) + b] =
+                tame(lowered * sent * share * (power === 0 ? 1 : share ** power), 3.4e38);
           }
         }
       }
@@ -100,7 +103,8 @@ const VolumeSuns = (() => {
             const from = 4 * (firstOf(owner) + there * stride);
             values.copyWithin(4 * (firstOf(brick) + point * stride), from, from + 4 * stride);
           } else {
-            lightPoint(brick, place, point, below);
+            const isCommon = place.includes(boxes) && place.filter(x => x % boxes === 0).length > 1;
+            lightPoint(brick, place, point, below, isCommon);
           }
         }
       });
