@@ -14,6 +14,7 @@ formats::Result<VolumeTruth> trace_volume_truth(
     const Context& context, TermSet terms) {
     const std::vector<formats::Environment> lights = make_volume_lights(probes);
     std::vector<LightSampler> samplers;
+    samplers.reserve(lights.size());
     for (const formats::Environment& light : lights) {
         samplers.push_back(make_light_sampler(light, glm::mat3(1.0f)));
     }
