@@ -16,7 +16,7 @@ bool is_grey(formats::Rgb c) {
 bool shows_grey(const formats::Scene& scene, std::uint32_t material) {
     const formats::Material& m = scene.materials[material];
     bool grey = is_grey(m.base_color) && m.base_color_image == formats::kNone && !m.marble &&
-                (m.medium || m.sheet || is_grey(m.gloss.specular_color));
+                (m.medium || m.sheet || m.gloss.is_diffuse() || is_grey(m.gloss.specular_color));
     for (const formats::Primitive& p : scene.primitives) {
         grey = grey && (p.material != material ||
                         std::ranges::all_of(p.color, [](formats::Rgb c) { return is_grey(c); }));

@@ -143,6 +143,37 @@ TEST(SeenSurfaces, NothingIsSentByBlackOnesOrToSmokeTooThinToBeSeen) {
     EXPECT_FALSE(is_on(alone));
 }
 
+// A black cloud between the sun and a small floor, beside the way from the floor to the smoke.
+TEST(SeenSurfaces, FloorInTheShadowOfAnotherVolumeSendsHardlyAnything) {
+    Scene scene = make_smoky_floor({0.8f, 0.8f, 0.8f}, 2, 0.9f);
+    scene.primitives[0] = make_quad({-0.2f, -1.6f, -0.2f}, {0, 0, 0.4f}, {0.4f, 0, 0}, 2);
+    bake::BakeOptions options = seen_bake();
+    options.effects = {"direct", "surface-volume"};
+    const auto from_side = [&] {
+        return look(bake_scene(scene, options), {0, 0, -1.2f}, {0, 0, 1}, "sun:90,30").radiance.g;
+    };
+    const float lit = from_side();
+    EXPECT_GT(lit, 0);
+    formats::Volume cloud = make_volume(make_ball_grid(0.5, 0.125), 20, 0, 0);
+    cloud.density.to_scene[3] += glm::dvec4(1.3, -0.85, 0, 0);
+    scene.volumes.push_back(cloud);
+    EXPECT_LT(from_side(), 0.3f * lit);
+}
+
+// One that reflects and lets nothing through, with the sun on the side of its normal.
+TEST(SeenSurfaces, SmokeSeesTheSideOfASheetThatFacesIt) {
+    bake::BakeOptions options = seen_bake();
+    options.effects = {"sheet", "surface-volume"};
+    const auto from_side = [&](float height) {
+        Scene scene = make_smoky_floor({1, 1, 1}, 2, 0.9f, 0, height);
+        scene.materials[0].sheet = formats::Sheet{{0.8f, 0.8f, 0.8f}, {0, 0, 0}};
+        return look(bake_scene(scene, options), {-1.2f, 0, 0}, {1, 0, 0}, "sun:90,60").radiance.g;
+    };
+    const float above = from_side(1.6f), below = from_side(-1.6f);
+    EXPECT_GT(above, 0.01f);
+    EXPECT_LT(below, 0.02f * above);
+}
+
 // What a roof shows below it is not the sun above it.
 TEST(SeenSurfaces, BacksOfDoubleSidedRoofsSendNothing) {
     Scene scene = make_smoky_floor({0.8f, 0.8f, 0.8f}, 2, 0.9f, 0, -0.8f);
@@ -154,6 +185,50 @@ TEST(SeenSurfaces, BacksOfDoubleSidedRoofsSendNothing) {
     EXPECT_EQ(single_sided.asset.volumes.rows.code8, double_sided.asset.volumes.rows.code8);
     EXPECT_EQ(single_sided.asset.volumes.rows.average_code,
               double_sided.asset.volumes.rows.average_code);
+}
+
+// Paths know of the sky alone: what surfaces add is the same beside either way, and the sky counts
+// once.
+TEST(SeenSurfaces, BesidePathsWalksFindLightOfSurfacesAndNothingElse) {
+    const Scene scene = make_smoky_floor({0.8f, 0.8f, 0.8f}, 3, 0.9f);
+    const auto light = [&](bake::VolumeMethod method, bool sees_surfaces) {
+        bake::BakeOptions options = seen_bake(sees_surfaces);
+        options.set(bake::kVolumeMethod, static_cast<double>(method));
+        return double{look(bake_scene(scene, options), {-1.2f, 0, 0}, {1, 0, 0}).radiance.g};
+    };
+    const double sky = light(bake::VolumeMethod::walks, false);
+    const double sky_by_paths = light(bake::VolumeMethod::path_integration, false);
+    const double added = light(bake::VolumeMethod::walks, true) - sky;
+    EXPECT_GT(added, 0.1);
+    EXPECT_NEAR(light(bake::VolumeMethod::path_integration, true) - sky_by_paths, added,
+                0.03 * added);
+    EXPECT_NEAR(sky_by_paths, sky, 0.15 * sky);
+}
+
+TEST(SeenSurfaces, ColouredMirrorsMakeColouredRowsAndGreyOnesDoNot) {
+    Scene scene = make_smoky_floor({0.5f, 0.5f, 0.5f}, 1, 0.9f);
+    const auto is_coloured = [&] {
+        return bake::plan_volumes(scene, bake::resolve_knobs(seen_bake()).value())
+            .layouts.at(0)
+            .coloured;
+    };
+    scene.materials[0].gloss.specular_color = {25, 5, 5};
+    EXPECT_FALSE(is_coloured()) << "mirrors nothing";
+    scene.materials[0].gloss.specular = 1;
+    EXPECT_TRUE(is_coloured());
+}
+
+TEST(SeenSurfaces, WalksAreNoIdleKnobWhereTheyFindLightOfSurfacesAlone) {
+    const Scene scene = make_smoky_floor({0.5f, 0.5f, 0.5f}, 1, 0.9f, 0.5f);
+    bake::BakeOptions options = seen_bake();
+    options.effects = {"direct", "volume-single", "surface-volume"};
+    const auto plan = bake::plan_volumes(scene, bake::resolve_knobs(options).value());
+    EXPECT_TRUE(bake::kVolumeWalks.matters({}, plan.entries));
+    EXPECT_TRUE(bake::kVolumeTerms.matters({}, plan.entries));
+    EXPECT_FALSE(bake::kVolumePaths.matters({}, plan.entries));
+    options.effects = {"direct", "volume-single"};
+    const auto once = bake::plan_volumes(scene, bake::resolve_knobs(options).value());
+    EXPECT_FALSE(bake::kVolumeWalks.matters({}, once.entries));
 }
 
 TEST(SeenSurfaces, AnyNumberOfThreadsGivesTheSameBits) {
