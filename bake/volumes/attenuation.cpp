@@ -37,17 +37,23 @@ std::uint64_t hide_behind_surfaces(const RayScene& rays, const LightCells& cells
 
 }  // namespace
 
-std::uint64_t gather_attenuation(const DensitySpace& space, const RayScene& rays,
-                                 const LightCells& cells, glm::vec3 position,
-                                 std::span<float> out) {
-    const std::size_t bands = space.extinction_bands();
+void gather_transmittance(const DensitySpace& space, const LightCells& cells, glm::vec3 position,
+                          std::span<float> out) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const std::array<float, 3> depth = optical_depth(space, position, cells.direction(i));
-        for (std::size_t band = 0; band < bands; ++band) {
+        for (std::size_t band = 0; band < space.extinction_bands(); ++band) {
             out[band * cells.size() + i] = std::exp(-depth[band]);
         }
     }
-    return rays.is_empty() ? 0 : hide_behind_surfaces(rays, cells, position, bands, out);
+}
+
+std::uint64_t gather_attenuation(const DensitySpace& space, const RayScene& rays,
+                                 const LightCells& cells, glm::vec3 position,
+                                 std::span<float> out) {
+    gather_transmittance(space, cells, position, out);
+    return rays.is_empty()
+               ? 0
+               : hide_behind_surfaces(rays, cells, position, space.extinction_bands(), out);
 }
 
 DepthTable make_depth_table(std::size_t points, std::size_t cells, std::size_t bands) {

@@ -13,9 +13,13 @@
 
 namespace opaline::bake {
 
+/// The share of light from each cell that volumes let through to a point, e^-(optical depth).
+/// `out`: bands * cells values, band after band; as many bands as DensitySpace::extinction_bands.
+void gather_transmittance(const DensitySpace& space, const LightCells& cells, glm::vec3 position,
+                          std::span<float> out);
+
 /// Attenuated light: V(x, l) = e^-(optical depth from x toward l), 0 where a surface stands before
-/// the light. `out`: bands * cells values, band after band; as many bands as
-/// DensitySpace::extinction_bands. Returns the rays traced.
+/// the light; `out` as of gather_transmittance. Returns the rays traced.
 std::uint64_t gather_attenuation(const DensitySpace& space, const RayScene& rays,
                                  const LightCells& cells, glm::vec3 position, std::span<float> out);
 

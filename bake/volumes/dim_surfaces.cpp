@@ -1,13 +1,13 @@
 #include "bake/volumes/dim_surfaces.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/select_coefficients.h"
+#include "bake/volumes/attenuation.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/light_cells.h"
 #include "bake/volumes/lit_vertex.h"
@@ -25,12 +25,7 @@ std::vector<float> transmittance(const DensitySpace& space, const LightCells& ce
                                  glm::vec3 position, std::uint32_t n) {
     const std::size_t bands = space.extinction_bands(), texels = formats::cubemap_texels(n);
     std::vector<float> coarse(bands * cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const std::array<float, 3> depth = optical_depth(space, position, cells.direction(i));
-        for (std::size_t band = 0; band < bands; ++band) {
-            coarse[band * cells.size() + i] = std::exp(-depth[band]);
-        }
-    }
+    gather_transmittance(space, cells, position, coarse);
     const std::size_t block = n / cells.n, m = cells.n;
     std::vector<float> fine(bands * texels);
     for (std::size_t i = 0; i < fine.size(); ++i) {

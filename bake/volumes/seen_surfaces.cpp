@@ -1,11 +1,11 @@
 #include "bake/volumes/seen_surfaces.h"
 
-#include <cmath>
 #include <numbers>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/plan/surface_albedo.h"
+#include "bake/volumes/attenuation.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 
@@ -38,20 +38,7 @@ std::size_t count_sides(const formats::PrimitiveRecord& record) {
     return record.shading == formats::Shading::sheet ? 2 : 1;
 }
 
-// Of one vertex toward each cell, by band of extinction.
-std::vector<float> transmittance_of_cells(const DensitySpace& space, const LightCells& cells,
-                                          glm::vec3 position) {
-    std::vector<float> through(space.extinction_bands() * cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        const std::array<float, 3> depth = optical_depth(space, position, cells.direction(i));
-        for (std::size_t band = 0; band < space.extinction_bands(); ++band) {
-            through[band * cells.size() + i] = std::exp(-depth[band]);
-        }
-    }
-    return through;
-}
-
-// A row as weighed, in cells; `scratch` is work space.
+// A row as weighed, in cells.
 std::vector<float> read_cells(const formats::SparseRowsView& rows, const formats::RowRange& range,
                               std::span<const float> weight, std::size_t vertex, std::uint32_t band,
                               std::uint32_t cells) {
@@ -111,8 +98,9 @@ SeenSurfaces find_seen_surfaces(const ShownSurfaces& shown, const DensitySpace& 
             record.vertex_count, kSeenAtOnce, context,
             [&](Range range) {
                 for (std::size_t v = range.begin; v < range.end; ++v) {
-                    const std::vector<float> through =
-                        transmittance_of_cells(space, cells, shown.scene.primitives[p].position[v]);
+                    std::vector<float> through(space.extinction_bands() * cells.size());
+                    gather_transmittance(space, cells, shown.scene.primitives[p].position[v],
+                                         through);
                     for (std::size_t side = 0; side < own_rows.sides; ++side) {
                         const std::vector<float> weight = weigh_rows(shown, record, p, v, side);
                         for (std::uint32_t band = 0; band < bands; ++band) {
