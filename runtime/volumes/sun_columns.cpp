@@ -67,13 +67,17 @@ std::array<std::int32_t, 3> SunColumns::cell(std::uint32_t brick) const {
             static_cast<std::int32_t>(at / extent[0] / extent[1])};
 }
 
-std::optional<SunColumns> place_bricks(const formats::VolumesView& volumes,
-                                       const formats::VolumeRecord& record) {
-    const auto lattice = make_lattice(volumes, record);
-    if (!lattice || lattice->table.empty() || record.brick_count == 0) return std::nullopt;
-    SunColumns placed{*lattice, std::vector<std::uint32_t>(record.brick_count), {}};
-    for (std::uint32_t at = 0; at < lattice->table.size(); ++at) {
-        if (lattice->table[at] != kNoBrick) placed.cell_of_brick[lattice->table[at]] = at;
+std::vector<SunColumns> place_volumes(const formats::VolumesView& volumes) {
+    std::vector<SunColumns> placed;
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        const formats::VolumeRecord& record = volumes.records[v];
+        const auto lattice = make_lattice(volumes, record);
+        if (!lattice || lattice->table.empty() || record.brick_count == 0) continue;
+        SunColumns& own = placed.emplace_back(SunColumns{*lattice, v, {}, {}});
+        own.cell_of_brick.resize(record.brick_count);
+        for (std::uint32_t at = 0; at < lattice->table.size(); ++at) {
+            if (lattice->table[at] != kNoBrick) own.cell_of_brick[lattice->table[at]] = at;
+        }
     }
     return placed;
 }

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,6 +15,7 @@ namespace opaline::runtime {
 /// What of a volume's density stands between its points of suns (sun_light.h) and each sun.
 struct SunColumns {
     VolumeLattice lattice;
+    std::size_t volume = 0;                    ///< its number in the asset
     std::vector<std::uint32_t> cell_of_brick;  ///< in the table, x fastest
     /// [m] Density times way from a point out of the volume: column[sun][brick * points() + point].
     std::vector<std::vector<float>> column;
@@ -28,9 +28,8 @@ struct SunColumns {
     }
 };
 
-/// Nothing where no ray meets the volume. No columns yet.
-std::optional<SunColumns> place_bricks(const formats::VolumesView& volumes,
-                                       const formats::VolumeRecord& record);
+/// Those of the volumes that rays may meet, in their order. No columns yet.
+std::vector<SunColumns> place_volumes(const formats::VolumesView& volumes);
 
 /// Finds the columns toward `suns` [world, unit] in all volumes.
 ///

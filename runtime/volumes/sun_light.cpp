@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "runtime/parallel.h"
@@ -23,13 +22,12 @@ using formats::Rgb;
 struct SunPoints {
     std::span<const SunColumns> volumes;  // all that hold density
     std::size_t own;                      // of those
-    std::size_t number;                   // of the asset's
     std::span<const Rgb> reach;
     std::vector<std::vector<std::size_t>> shades;  // of each sun: others of `volumes`
     VolumeLight& light;
 
     const SunColumns& columns() const { return volumes[own]; }
-    const VolumeLight::Part& part() const { return light.part[number]; }
+    const VolumeLight::Part& part() const { return light.part[columns().volume]; }
 };
 
 // U_s at a point; 1 where no node is.
@@ -73,8 +71,8 @@ void light_point(const SunPoints& points, const SunPoint& point, std::span<Rgb> 
         const Rgb share{std::min(known.r, rows.r), std::min(known.g, rows.g),
                         std::min(known.b, rows.b)};
         const SunThrough through =
-            find_sun_through(points.light.sun_phase[points.number], record.albedo, share);
-        const Rgb arrives = share * points.light.sun_light(points.number, s);
+            find_sun_through(points.light.sun_phase[points.columns().volume], record.albedo, share);
+        const Rgb arrives = share * points.light.sun_light(points.columns().volume, s);
         for (std::size_t j = 0; j < part.sun_terms; ++j) {
             const Rgb lowered =
                 find_lowering(point, points.columns().column[s], record.sigma_t,
@@ -118,20 +116,12 @@ void light_brick(const SunPoints& points, std::uint32_t brick, bool copies) {
 void light_sun_points(const formats::VolumesView& volumes, std::span<const std::vector<Rgb>> reach,
                       unsigned threads, VolumeLight& light) {
     if (std::ranges::none_of(light.part, [](const auto& part) { return part.suns > 0; })) return;
-    std::vector<SunColumns> placed;
-    std::vector<std::size_t> number;
-    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
-        if (auto columns = place_bricks(volumes, volumes.records[v])) {
-            placed.push_back(std::move(*columns));
-            number.push_back(v);
-        }
-    }
+    std::vector<SunColumns> placed = place_volumes(volumes);
     find_sun_columns(placed, light.sun, threads);
     for (std::size_t own = 0; own < placed.size(); ++own) {
-        if (light.part[number[own]].suns == 0) continue;
-        const SunPoints points{
-            placed, own, number[own], reach[number[own]], find_shades(placed, own, light.sun),
-            light};
+        if (light.part[placed[own].volume].suns == 0) continue;
+        const SunPoints points{placed, own, reach[placed[own].volume],
+                               find_shades(placed, own, light.sun), light};
         const auto count = static_cast<std::uint32_t>(placed[own].cell_of_brick.size());
         for (const bool copies : {false, true}) {
             constexpr std::uint32_t kBricks = 16;

@@ -99,9 +99,7 @@ struct PlacedWaves {
             test::add_volume(volumes, part);
         }
         view = volumes.view();
-        for (const formats::VolumeRecord& record : view.records) {
-            placed.push_back(*place_bricks(view, record));
-        }
+        placed = place_volumes(view);
     }
 };
 
