@@ -4,80 +4,35 @@
 #include <unistd.h>
 
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "formats/opal/write_opal.h"
-#include "runtime/opaline.h"
+#include "tests/runtime/embed_gl/host/loaded_file.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::test {
 
-/// An asset loaded as a host does: through bytes and opaline.h.
-class EmbeddedAsset {
+/// An asset loaded from a file as a host does, lit by light_by_gradient.
+class EmbeddedAsset : public LoadedFile {
   public:
-    explicit EmbeddedAsset(const formats::Asset& asset) {
-        const std::filesystem::path path = std::filesystem::path(testing::TempDir()) /
-                                           ("embedded-" + std::to_string(getpid()) + ".opal");
-        auto file = formats::AtomicFile::create(path);
-        EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
-        std::ifstream in(path, std::ios::binary);
-        const std::string content{std::istreambuf_iterator<char>(in), {}};
-        std::filesystem::remove(path);
-        storage_.resize(content.size() + 64);
-        void* bytes = storage_.data();
-        std::size_t room = storage_.size();
-        std::align(64, content.size(), bytes, room);
-        std::memcpy(bytes, content.data(), content.size());
-        EXPECT_EQ(opaline_asset_load(bytes, content.size(), &asset_), OPALINE_OK)
-            << opaline_last_error();
-        EXPECT_EQ(opaline_light_create(asset_, &light_), OPALINE_OK);
-        light_up();
-    }
-    EmbeddedAsset(const EmbeddedAsset&) = delete;
-    EmbeddedAsset& operator=(const EmbeddedAsset&) = delete;
-    ~EmbeddedAsset() {
-        opaline_light_release(light_);
-        opaline_asset_release(asset_);
-    }
-
-    const opaline_asset* asset() const { return asset_; }
-    opaline_light* light() const { return light_; }
-    std::uint32_t receivers() const { return opaline_asset_receiver_count(asset_); }
-
-    /// What opaline_gl hands out, from the CPU: three floats a receiver.
-    std::vector<float> expected(const float* eye) const {
-        std::vector<float> rgb(3 * std::size_t{receivers()});
-        EXPECT_EQ(
-            opaline_shade_from(asset_, light_,
-                               OPALINE_SHADE_WITHOUT_BASE_COLOR | OPALINE_SHADE_WITHOUT_FRESNEL,
-                               eye, 0, receivers(), rgb.data(), rgb.size()),
-            OPALINE_OK)
-            << opaline_last_error();
-        return rgb;
+    explicit EmbeddedAsset(const formats::Asset& asset) : LoadedFile(written(asset)) {
+        std::filesystem::remove(path());
+        light_by_gradient(light());
     }
 
   private:
-    // A gradient that differs between bands, and a sun.
-    void light_up() {
-        std::vector<float> map;
-        for (int i = 0; i < 32 * 16; ++i) {
-            const float x = static_cast<float>(i % 32) / 32, y = static_cast<float>(i / 32) / 16;
-            map.insert(map.end(), {0.2f + x, 1 - y, 0.5f + x * y});
-        }
-        const float direction[3] = {1, 2, 0.5f}, radiance[3] = {900, 800, 700};
-        EXPECT_EQ(opaline_light_set_lat_long(light_, map.data(), 32, 16), OPALINE_OK);
-        EXPECT_EQ(opaline_light_add_sun(light_, direction, 0.02f, radiance), OPALINE_OK);
+    static std::filesystem::path path() {
+        return std::filesystem::path(testing::TempDir()) /
+               ("embedded-" + std::to_string(getpid()) + ".opal");
     }
-
-    std::vector<char> storage_;
-    opaline_asset* asset_ = nullptr;
-    opaline_light* light_ = nullptr;
+    static std::filesystem::path written(const formats::Asset& asset) {
+        auto file = formats::AtomicFile::create(path());
+        EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+        return path();
+    }
 };
 
 /// Every kind of receiver: opaque of one and three bands, thin-walled, translucent of several

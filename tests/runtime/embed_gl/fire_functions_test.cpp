@@ -41,7 +41,6 @@ TEST_P(EmbedGlVolumes, FireShinesAlongRaysAndAtPointsAsOnTheCpuInItsEmittersColo
     make(make_burning_puffs());
     EXPECT_EQ(objects().glows, 1u);
     HostPicture host = picture();
-    bind(host);
     const float eye[3] = {0.4f, 1.2f, -2};
     ASSERT_EQ(opaline_gl_look_from(gl_, eye), OPALINE_OK);
     const std::vector<HostRay> rays = scattered_rays(300);
@@ -62,17 +61,12 @@ TEST_P(EmbedGlVolumes, FireShinesAlongRaysAndAtPointsAsOnTheCpuInItsEmittersColo
         scattered_alone = brightest;
     }
     std::vector<HostRay> places;
-    std::vector<opaline_sample_point> points;
     for (int i = 0; i < 200; ++i) {
         const float at = 0.01f * static_cast<float>(i);
         places.push_back({{0.5f * at, 0.7f - 0.3f * at, 2 + at}, 0, {0, 0, -1}, 0});
-        const float* from = places.back().from;
-        points.push_back({{eye[0] + from[0], eye[1] + from[1], eye[2] + from[2]}, {0, 0, -1}});
     }
-    std::vector<opaline_sample_result> cpu(points.size());
-    ASSERT_EQ(opaline_volumes_sample(host_->asset(), volume_light_, points.data(),
-                                     static_cast<std::uint32_t>(points.size()), cpu.data()),
-              OPALINE_OK);
+    const std::vector<opaline_sample_result> cpu =
+        sample_points(host_->asset(), volume_light_, places, eye);
     host.set_flag("is_point", true);
     const std::vector<float> drawn = host.draw(places);
     bool glows_without_smoke = false;
@@ -97,11 +91,8 @@ TEST_P(EmbedGlVolumes, AnEarlierHostSeesFireWithoutItsOwnLight) {
     EXPECT_EQ(early.struct_size, offsetof(opaline_gl_volumes, glows));
     EXPECT_EQ(early.glows, 7u);  // behind what it knows
     EXPECT_EQ(early.block, objects().block);
-    HostPicture host(GetParam(), {"opaline_volumes.glsl"},
-                     "#define OPALINE_VOLUMES 2\n#define OPALINE_VOLUME_TERMS " +
-                         std::to_string(early.terms) + "\n",
-                     kSeeVolumes);
-    bind_scattered(host, early);
+    early.glows = 0;  // as in a host that knows nothing of it
+    HostPicture host = make_volume_picture(GetParam(), early);
     const float eye[3] = {0.4f, 1.2f, -2};
     ASSERT_EQ(opaline_gl_look_from(gl_, eye), OPALINE_OK);
     const std::vector<HostRay> rays = scattered_rays(100);

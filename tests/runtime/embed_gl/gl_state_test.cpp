@@ -6,7 +6,7 @@
 #include <string>
 
 #include "tests/runtime/embed_gl/embedded_asset.h"
-#include "tests/runtime/embed_gl/host_context.h"
+#include "tests/runtime/embed_gl/gl_fixture.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/support/cloud_layers.h"
 #define GL_GLEXT_PROTOTYPES

@@ -10,23 +10,11 @@
 #include "runtime/holes.h"
 #include "runtime/texture.h"
 #include "tests/runtime/embed_gl/embedded_asset.h"
-#include "tests/runtime/embed_gl/host_picture.h"
+#include "tests/runtime/embed_gl/gl_fixture.h"
+#include "tests/runtime/embed_gl/host/host_images.h"
 
 namespace opaline::test {
 namespace {
-
-// from.xy: texture coordinates, begin: alpha of a sample; direction.xy: its pixel.
-const char* const kSeeImages = R"(
-uniform usampler2D base_color_image, other_image;
-uniform ivec2 base_color_wrap, other_wrap;
-uniform vec2 cutoff_mode;
-void see(vec3 from, float begin, vec3 direction, float end, out vec4 a, out vec4 b) {
-    a.rgb = opaline_sample_image(base_color_image, from.xy, base_color_wrap, true);
-    b.rgb = opaline_sample_image(other_image, from.xy, other_wrap, false);
-    a.a = opaline_covers(begin, cutoff_mode, uvec2(direction.xy), 17u) ? 1.0 : 0.0;
-    b.a = 0.0;
-}
-)";
 
 constexpr formats::Wrap kWraps[] = {formats::Wrap::repeat, formats::Wrap::clamp,
                                     formats::Wrap::mirror};
@@ -64,10 +52,7 @@ formats::Asset make_pictured() {
 class EmbedGlImages : public EmbedGl {};
 
 opaline_gl_images images_of(const opaline_gl* gl, std::uint32_t primitive) {
-    opaline_gl_images images{};
-    images.struct_size = sizeof images;
-    EXPECT_EQ(opaline_gl_get_images(gl, primitive, &images), OPALINE_OK);
-    return images;
+    return filled<opaline_gl_images>(opaline_gl_get_images, gl, primitive);
 }
 
 TEST_P(EmbedGlImages, SamplesAndCoverageAreTheCpus) {
@@ -89,13 +74,8 @@ TEST_P(EmbedGlImages, SamplesAndCoverageAreTheCpus) {
     for (std::uint32_t p = 0; p < 3; ++p) {
         SCOPED_TRACE(p);
         const opaline_gl_images images = images_of(gl, p);
-        HostPicture picture(GetParam(), {"opaline_images.glsl"}, "", kSeeImages);
-        picture.bind_texture("base_color_image", images.base_color.texture);
-        picture.bind_texture("other_image", images.gloss.texture);
-        picture.bind_texture("opaline_srgb_table", images.srgb_table);
-        picture.set_pair("base_color_wrap", images.base_color.wrap[0], images.base_color.wrap[1]);
-        picture.set_pair("other_wrap", images.gloss.wrap[0], images.gloss.wrap[1]);
-        picture.set_numbers("cutoff_mode", images.cutoff_mode[0], images.cutoff_mode[1]);
+        HostPicture picture =
+            make_image_picture(GetParam(), images.base_color, images.gloss, images);
         const std::vector<float> drawn = picture.draw(samples);
         const formats::AssetView view = asset.view();
         int covered = 0;

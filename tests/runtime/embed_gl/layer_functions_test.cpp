@@ -15,7 +15,8 @@
 #include "runtime/picture/layer_pass.h"
 #include "runtime/picture/software_renderer.h"
 #include "tests/runtime/embed_gl/embedded_asset.h"
-#include "tests/runtime/embed_gl/host_picture.h"
+#include "tests/runtime/embed_gl/gl_fixture.h"
+#include "tests/runtime/embed_gl/host/host_layer.h"
 #include "tests/support/cloud_layers.h"
 
 namespace opaline::test {
@@ -24,27 +25,6 @@ namespace {
 using formats::Rgb;
 using formats::Vec3;
 
-// A pixel of a host whose sky is even; or the layer's parts.
-const char* const kSeeLayer = R"(
-uniform bool wants_parts;
-uniform float spread;
-void see(vec3 from, float begin, vec3 direction, float end, out vec4 a, out vec4 b) {
-    if (wants_parts) {
-        OpalineSeenLayer seen = opaline_layer_see(from, direction, begin, end, spread);
-        a = vec4(seen.radiance + 2.0 * seen.glow, seen.distance);
-        b = vec4(seen.transmittance, seen.sun_transmittance.b);
-        return;
-    }
-    float ground = opaline_layer_ground_distance(from, direction);
-    bool is_sky = ground > 1e8;
-    OpalineSeenLayer seen =
-        opaline_layer_see(from, direction, begin, is_sky ? 1e30 : ground, spread);
-    vec3 behind = is_sky ? vec3(1.0, 0.8, 0.5)
-                         : opaline_layer_ground_radiance(from, direction, ground, spread);
-    a = vec4(seen.radiance + seen.transmittance * behind + (is_sky ? seen.glow : vec3(0.0)), 1.0);
-    b = vec4(0.0);
-}
-)";
 constexpr float kSpread = 2e-3f;
 
 // Bumps with holes, over a ground of squares.
@@ -151,21 +131,8 @@ class EmbedGlLayer : public EmbedGl {
         ASSERT_EQ(opaline_gl_show_layer(gl_, host_->asset(), layer_light_), OPALINE_OK)
             << opaline_last_error();
         if (picture_) return;
-        opaline_gl_layer layer{};
-        layer.struct_size = sizeof layer;
-        ASSERT_EQ(opaline_gl_get_layer(gl_, &layer), OPALINE_OK);
-        picture_.emplace(GetParam(), std::vector<std::string>{"opaline_layer.glsl"},
-                         "#define OPALINE_LAYER_REPEAT " + std::to_string(layer.repeats) +
-                             "\n#define OPALINE_LAYER_MODES " + std::to_string(layer.modes) +
-                             "\n#define OPALINE_LAYER_GLOW " + std::to_string(layer.glows) + "\n",
-                         kSeeLayer);
-        picture_->bind_texture("opaline_layer_table_values", layer.table_values);
-        picture_->bind_texture("opaline_layer_sun_values", layer.sun_values);
-        picture_->bind_texture("opaline_layer_thickness_values", layer.thickness_values);
-        picture_->bind_texture("opaline_layer_albedo_map", layer.albedo_map);
-        picture_->bind_texture("opaline_layer_ground_light", layer.ground_light);
-        picture_->bind_texture("opaline_layer_base_light", layer.base_light);
-        picture_->bind_block("OpalineLayer", layer.block);
+        picture_.emplace(
+            make_layer_picture(GetParam(), filled<opaline_gl_layer>(opaline_gl_get_layer, gl_)));
     }
     void look_from(Vec3 eye) const {
         const float at[3] = {eye.x, eye.y, eye.z};

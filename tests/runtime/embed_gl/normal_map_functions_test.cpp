@@ -3,14 +3,13 @@
 
 #include <cmath>
 #include <random>
-#include <sstream>
-#include <string>
 
 #include "formats/opal/sheet_shares.h"
 #include "runtime/normal_maps/normal_map.h"
 #include "runtime/normal_maps/turned_light.h"
 #include "tests/runtime/embed_gl/embedded_asset.h"
-#include "tests/runtime/embed_gl/host_picture.h"
+#include "tests/runtime/embed_gl/gl_fixture.h"
+#include "tests/runtime/embed_gl/host/host_images.h"
 
 namespace opaline::test {
 namespace {
@@ -39,26 +38,8 @@ Asset make_mapped() {
     return asset;
 }
 
-std::string glsl(const float (&v)[3]) {
-    std::ostringstream text;
-    text.precision(9);
-    text << std::scientific << "vec3(" << v[0] << ", " << v[1] << ", " << v[2] << ")";
-    return text.str();
-}
-
-template <std::size_t N>
-std::string glsl_array(const float (&values)[N][3]) {
-    std::string text = "vec3[" + std::to_string(N) + "](";
-    for (std::size_t i = 0; i < N; ++i)
-        text += (i == 0 ? "" : ", ") + glsl(values[i]);
-    return text + ")";
-}
-
 opaline_gl_normal_map normal_map_of(const opaline_gl* gl, std::uint32_t primitive) {
-    opaline_gl_normal_map map{};
-    map.struct_size = sizeof map;
-    EXPECT_EQ(opaline_gl_get_normal_map(gl, primitive, &map), OPALINE_OK);
-    return map;
+    return filled<opaline_gl_normal_map>(opaline_gl_get_normal_map, gl, primitive);
 }
 
 TEST_P(EmbedGlNormalMaps, NormalsAndTurnedLightAreTheCpus) {
@@ -103,23 +84,7 @@ TEST_P(EmbedGlNormalMaps, NormalsAndTurnedLightAreTheCpus) {
     EXPECT_EQ(sheet.harmonics[1][2], two_sided.harmonics[1].b);
     EXPECT_EQ(sheet.least[0], two_sided.least.r);
 
-    // from.xy: texture coordinates; direction: the normal of the receiver; begin: its radiance.
-    const std::string see =
-        "uniform usampler2D image;\nuniform ivec2 wrap;\n"
-        "void see(vec3 from, float begin, vec3 direction, float end, out vec4 a, out vec4 b) {\n"
-        "    OpalineTurnedLight light = OpalineTurnedLight(" +
-        glsl_array(map.harmonics) + ", " + glsl(map.least) + ", " + std::to_string(map.suns) +
-        ", " + glsl_array(map.sun_direction) + ", " + glsl_array(map.sun_light) +
-        ");\n"
-        "    vec3 mapped = opaline_mapped_normal(opaline_sample_image(image, from.xy, wrap, "
-        "false), "
-        "0.7, direction, vec4(normalize(cross(direction, vec3(0.1, 0.2, 1.0))), -1.0));\n"
-        "    a = vec4(mapped, 0.0);\n"
-        "    b = vec4(opaline_turn_light(light, vec3(begin, 0.9 * begin, 0.8 * begin), direction, "
-        "mapped), 0.0);\n}\n";
-    HostPicture picture(GetParam(), {"opaline_surface.glsl", "opaline_images.glsl"}, "", see);
-    picture.bind_texture("image", map.image.texture);
-    picture.set_pair("wrap", map.image.wrap[0], map.image.wrap[1]);
+    HostPicture picture = make_normal_map_picture(GetParam(), map);
     std::mt19937 generator(5);
     std::uniform_real_distribution<float> value(-2, 2), share(0, 3);
     std::vector<HostRay> samples;
@@ -133,9 +98,9 @@ TEST_P(EmbedGlNormalMaps, NormalsAndTurnedLightAreTheCpus) {
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto& d = samples[i].direction;
         const Vec3 n{d[0], d[1], d[2]};
-        const Vec3 mapped = runtime::mapped_normal(
-            view, view.normal_maps.record[0], {samples[i].from[0], samples[i].from[1]}, n,
-            {formats::normalize(cross(n, {0.1f, 0.2f, 1})), -1});
+        const Vec3 mapped =
+            runtime::mapped_normal(view, view.normal_maps.record[0],
+                                   {samples[i].from[0], samples[i].from[1]}, n, host_tangent(n));
         EXPECT_NEAR(drawn[8 * i], mapped.x, 1e-5f);
         EXPECT_NEAR(drawn[8 * i + 1], mapped.y, 1e-5f);
         const float x = samples[i].begin;

@@ -11,7 +11,6 @@
 #include "runtime/api_support.h"
 #include "runtime/picture/software_renderer.h"
 #include "tests/runtime/embed_gl/embedded_asset.h"
-#include "tests/runtime/embed_gl/host_picture.h"
 #include "tests/runtime/embed_gl/volume_host.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
@@ -32,7 +31,6 @@ TEST_P(EmbedGlVolumes, RaysSeeWhatTheCpuMarches) {
         if (gl_ != nullptr) TearDown();
         make(make_puffs(far));
         HostPicture host = picture();
-        bind(host);
         std::vector<HostRay> rays = scattered_rays(600);
         // There, world coordinates of floats have 0.2 mm at best: all rays from the eye itself.
         for (HostRay& ray : rays) {
@@ -78,22 +76,15 @@ TEST_P(EmbedGlVolumes, PointsHaveTheCpusExtinctionAndScattering) {
     std::mt19937 generator(3);
     std::uniform_real_distribution<float> value(-1, 1);
     std::vector<HostRay> places;
-    std::vector<opaline_sample_point> points;
     for (int i = 0; i < 500; ++i) {
-        HostRay place{{1.2f * value(generator), 1.2f * value(generator), 1 + value(generator)},
-                      0,
-                      {0.6f, 0, 0.8f},
-                      0};
-        places.push_back(place);
-        points.push_back({{eye[0] + place.from[0], eye[1] + place.from[1], eye[2] + place.from[2]},
-                          {0.6f, 0, 0.8f}});
+        places.push_back({{1.2f * value(generator), 1.2f * value(generator), 1 + value(generator)},
+                          0,
+                          {0.6f, 0, 0.8f},
+                          0});
     }
-    std::vector<opaline_sample_result> cpu(points.size());
-    ASSERT_EQ(opaline_volumes_sample(host_->asset(), volume_light_, points.data(),
-                                     static_cast<std::uint32_t>(points.size()), cpu.data()),
-              OPALINE_OK);
+    const std::vector<opaline_sample_result> cpu =
+        sample_points(host_->asset(), volume_light_, places, eye);
     HostPicture host = picture();
-    bind(host);
     host.set_flag("is_point", true);
     const std::vector<float> drawn = host.draw(places);
     float thickest = 0, brightest = 0;
@@ -136,7 +127,6 @@ TEST_P(EmbedGlVolumes, PixelsAreThoseOfTheRenderedPicture) {
         rays.push_back({{0, 0, 0}, camera.near_plane, {d.x, d.y, d.z}, 1e30f});
     }
     HostPicture host = picture();
-    bind(host);
     const std::vector<float> drawn = host.draw(rays);
     float brightest = 0;
     for (const formats::Rgb& pixel : rendered->pixel)

@@ -12,26 +12,12 @@
 #include <vector>
 
 #include "tests/runtime/embed_gl/embedded_asset.h"
-#include "tests/runtime/embed_gl/host_picture.h"
+#include "tests/runtime/embed_gl/gl_fixture.h"
+#include "tests/runtime/embed_gl/host/host_volumes.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 #include "tests/support/cut_phase.h"
 
 namespace opaline::test {
-
-inline constexpr const char* kSeeVolumes = R"(
-uniform bool is_point;
-void see(vec3 from, float begin, vec3 direction, float end, out vec4 a, out vec4 b) {
-    if (is_point) {
-        OpalineVolumeSample found = opaline_sample_volumes(from, direction);
-        a = vec4(found.extinction, 1.0);
-        b = vec4(found.scattered, 1.0);
-        return;
-    }
-    OpalineSeen seen = opaline_march_volumes(from, direction, begin, end);
-    a = vec4(seen.radiance, 1.0);
-    b = vec4(seen.transmittance, 1.0);
-}
-)";
 
 // Of density 1 somewhere in each brick: else the codes of a brick are rounded to steps of the
 // densest neighbour's, 1.5e-5 of that density.
@@ -90,49 +76,15 @@ class EmbedGlVolumes : public EmbedGl {
         ASSERT_EQ(opaline_gl_light_volumes(gl_, volume_light_), OPALINE_OK) << opaline_last_error();
     }
     opaline_gl_volumes objects() const {
-        opaline_gl_volumes volumes{};
-        volumes.struct_size = sizeof volumes;
-        EXPECT_EQ(opaline_gl_get_volumes(gl_, &volumes), OPALINE_OK);
+        const auto volumes = filled<opaline_gl_volumes>(opaline_gl_get_volumes, gl_);
+        EXPECT_EQ(volumes.glows != 0, volumes.glow_words != 0);
         return volumes;
     }
-    HostPicture picture() const {
-        const opaline_gl_volumes volumes = objects();
-        return HostPicture(GetParam(), {"opaline_volumes.glsl"},
-                           "#define OPALINE_VOLUMES " + std::to_string(volumes.count) +
-                               "\n#define OPALINE_VOLUME_TERMS " + std::to_string(volumes.terms) +
-                               (volumes.glows != 0 ? "\n#define OPALINE_VOLUME_GLOW 1\n" : "\n"),
-                           kSeeVolumes);
-    }
-    /// But for the words of own light.
-    static void bind_scattered(HostPicture& picture, const opaline_gl_volumes& volumes) {
-        picture.bind_texture("opaline_brick_numbers", volumes.brick_numbers);
-        picture.bind_texture("opaline_density_codes", volumes.density_codes);
-        picture.bind_texture("opaline_corner_numbers", volumes.corner_numbers);
-        picture.bind_texture("opaline_node_light", volumes.node_light);
-        picture.bind_texture("opaline_phase_entries", volumes.phase_entries);
-        picture.bind_block("OpalineVolumeRecords", volumes.block);
-    }
-    void bind(HostPicture& picture) const {
-        const opaline_gl_volumes volumes = objects();
-        bind_scattered(picture, volumes);
-        EXPECT_EQ(volumes.glows != 0, volumes.glow_words != 0);
-        if (volumes.glows != 0) picture.bind_texture("opaline_glow_words", volumes.glow_words);
-    }
+    HostPicture picture() const { return make_volume_picture(GetParam(), objects()); }
     // What the CPU sees of rays from the eye.
     std::vector<opaline_march_result> march(const std::vector<HostRay>& rays,
                                             const float (&eye)[3]) const {
-        std::vector<opaline_march_ray> march;
-        for (const HostRay& ray : rays) {
-            march.push_back({{eye[0] + ray.from[0], eye[1] + ray.from[1], eye[2] + ray.from[2]},
-                             {ray.direction[0], ray.direction[1], ray.direction[2]},
-                             ray.begin,
-                             ray.end});
-        }
-        std::vector<opaline_march_result> seen(march.size());
-        EXPECT_EQ(opaline_volumes_march(host_->asset(), volume_light_, nullptr, march.data(),
-                                        static_cast<std::uint32_t>(march.size()), seen.data()),
-                  OPALINE_OK);
-        return seen;
+        return march_rays(host_->asset(), volume_light_, rays, eye);
     }
     std::unique_ptr<EmbeddedAsset> host_;
     opaline_gl* gl_ = nullptr;

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "tests/runtime/embed_gl/embedded_asset.h"
-#include "tests/runtime/embed_gl/host_context.h"
+#include "tests/runtime/embed_gl/gl_fixture.h"
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 

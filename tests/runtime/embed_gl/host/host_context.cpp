@@ -1,4 +1,4 @@
-#include "tests/runtime/embed_gl/host_context.h"
+#include "tests/runtime/embed_gl/host/host_context.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
@@ -7,7 +7,7 @@
 
 #include <cstdlib>
 #include <cstring>
-#include <iostream>
+#include <stdexcept>
 #include <utility>
 
 namespace opaline::test {
@@ -28,9 +28,14 @@ EGLDisplay host_display() {
 
 }  // namespace
 
+void require(bool holds, const std::string& text) {
+    if (!holds) throw std::runtime_error(text);
+}
+
 std::optional<HostContext> HostContext::create(HostApi api, const HostContext* shared) {
     // Mesa gives the newest compatible context whatever older one is asked for; not with these.
-    setenv("MESA_GL_VERSION_OVERRIDE", "4.3", 1);
+    const EGLint minor = api == HostApi::desktop_45 ? 5 : 3;
+    setenv("MESA_GL_VERSION_OVERRIDE", minor == 5 ? "4.5" : "4.3", 1);
     setenv("MESA_GLES_VERSION_OVERRIDE", "3.1", 1);
     HostContext made;
     made.display_ = host_display();
@@ -40,7 +45,8 @@ std::optional<HostContext> HostContext::create(HostApi api, const HostContext* s
     }
     const bool is_es = api == HostApi::es_31;
     eglBindAPI(is_es ? EGL_OPENGL_ES_API : EGL_OPENGL_API);
-    const EGLint desktop[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 3, EGL_NONE};
+    const EGLint desktop[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, minor,
+                              EGL_NONE};
     const EGLint es[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 1, EGL_NONE};
     made.context_ = eglCreateContext(made.display_, nullptr,
                                      shared != nullptr ? shared->context_ : EGL_NO_CONTEXT,
@@ -77,31 +83,16 @@ void* load_gl(const char* name) {
     return reinterpret_cast<void*>(eglGetProcAddress(name));
 }
 
-void EmbedGl::SetUp() {
-    context_ = HostContext::create(GetParam());
-    if (!context_) {
-        std::cerr << "NO OPENGL ON THIS MACHINE: Opaline::gl is NOT tested\n";
-        GTEST_SKIP() << "EGL offers no context of that version";
-    }
-}
-
-std::string api_name(const testing::TestParamInfo<HostApi>& info) {
-    return info.param == HostApi::es_31 ? "Es31" : "Desktop43";
-}
-
 std::vector<float> read_floats(unsigned buffer, std::size_t count) {
     std::vector<float> values(count);
     GLint previous = 0;
     glGetIntegerv(GL_COPY_READ_BUFFER_BINDING, &previous);
     glBindBuffer(GL_COPY_READ_BUFFER, buffer);
     const auto size = static_cast<GLsizeiptr>(count * sizeof(float));
-    if (const void* const mapped =
-            glMapBufferRange(GL_COPY_READ_BUFFER, 0, size, GL_MAP_READ_BIT)) {
-        std::memcpy(values.data(), mapped, count * sizeof(float));
-        glUnmapBuffer(GL_COPY_READ_BUFFER);
-    } else {
-        ADD_FAILURE() << "the buffer cannot be read";
-    }
+    const void* const mapped = glMapBufferRange(GL_COPY_READ_BUFFER, 0, size, GL_MAP_READ_BIT);
+    require(mapped != nullptr, "the buffer cannot be read");
+    std::memcpy(values.data(), mapped, count * sizeof(float));
+    glUnmapBuffer(GL_COPY_READ_BUFFER);
     glBindBuffer(GL_COPY_READ_BUFFER, static_cast<GLuint>(previous));
     return values;
 }

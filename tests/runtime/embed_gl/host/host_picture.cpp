@@ -1,8 +1,9 @@
-#include "tests/runtime/embed_gl/host_picture.h"
+#include "tests/runtime/embed_gl/host/host_picture.h"
 
 #include <array>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -30,21 +31,35 @@ void main() {
 }
 )";
 
-void attach(GLuint program, GLenum stage, HostApi api, const std::string& text) {
-    const std::array<const char*, 2> parts{
-        api == HostApi::es_31 ? "#version 310 es\nprecision highp float;\n" : "#version 430 core\n",
-        text.c_str()};
+std::string version_of(HostApi api) {
+    return api == HostApi::es_31        ? "#version 310 es\nprecision highp float;\n"
+           : api == HostApi::desktop_43 ? "#version 430 core\n"
+                                        : "#version 450 core\n";
+}
+
+}  // namespace
+
+std::string read_functions(const std::string& file) {
+    std::ifstream in(std::string(OPALINE_GLSL_DIR "/") + file);
+    require(in.good(), file + " is not installed");
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void attach_shader(unsigned program, unsigned stage, const std::vector<std::string>& parts) {
+    std::vector<const char*> texts;
+    for (const std::string& part : parts)
+        texts.push_back(part.c_str());
     const GLuint shader = glCreateShader(stage);
-    glShaderSource(shader, 2, parts.data(), nullptr);
+    glShaderSource(shader, static_cast<GLsizei>(texts.size()), texts.data(), nullptr);
     glCompileShader(shader);
     std::array<char, 2000> log{};
     glGetShaderInfoLog(shader, log.size(), nullptr, log.data());
-    EXPECT_STREQ(log.data(), "");
+    require(log[0] == 0, log.data());
     glAttachShader(program, shader);
     glDeleteShader(shader);
 }
 
-GLuint make_float_target(GLsizei width, GLsizei height) {
+unsigned make_float_target(int width, int height) {
     GLuint texture = 0;
     glGenTextures(1, &texture);
     glBindTexture(GL_TEXTURE_2D, texture);
@@ -54,27 +69,30 @@ GLuint make_float_target(GLsizei width, GLsizei height) {
     return texture;
 }
 
-}  // namespace
-
 HostPicture::HostPicture(HostApi api, const std::vector<std::string>& files,
                          const std::string& defines, const std::string& see) {
     std::string functions;
-    for (const std::string& name : files) {
-        std::ifstream file(std::string(OPALINE_GLSL_DIR "/") + name);
-        EXPECT_TRUE(file) << name;
-        functions.append(std::istreambuf_iterator<char>(file), {});
-    }
+    for (const std::string& name : files)
+        functions += read_functions(name);
     program_ = glCreateProgram();
-    attach(program_, GL_VERTEX_SHADER, api, kWholeTarget);
-    attach(program_, GL_FRAGMENT_SHADER, api, defines + functions + see + kSeeRays);
+    attach_shader(program_, GL_VERTEX_SHADER, {version_of(api), kWholeTarget});
+    attach_shader(program_, GL_FRAGMENT_SHADER,
+                  {version_of(api), defines, functions, see, kSeeRays});
     glLinkProgram(program_);
     GLint is_linked = GL_FALSE;
     glGetProgramiv(program_, GL_LINK_STATUS, &is_linked);
-    EXPECT_EQ(is_linked, GL_TRUE);
+    require(is_linked == GL_TRUE, "the program does not link");
     glUseProgram(program_);
     glGenVertexArrays(1, &array_);
     glGenFramebuffers(1, &framebuffer_);
 }
+
+HostPicture::HostPicture(HostPicture&& other) noexcept
+    : program_(std::exchange(other.program_, 0)),
+      array_(std::exchange(other.array_, 0)),
+      framebuffer_(std::exchange(other.framebuffer_, 0)),
+      textures_(std::move(other.textures_)),
+      blocks_(other.blocks_) {}
 
 HostPicture::~HostPicture() {
     glDeleteProgram(program_);
@@ -84,20 +102,20 @@ HostPicture::~HostPicture() {
 
 void HostPicture::bind_texture(const char* uniform, unsigned texture) {
     const GLint location = glGetUniformLocation(program_, uniform);
-    EXPECT_GE(location, 0) << uniform;
+    require(location >= 0, uniform);
     textures_.emplace_back(location, texture);
 }
 
 void HostPicture::bind_block(const char* name, unsigned buffer) {
     const GLuint index = glGetUniformBlockIndex(program_, name);
-    ASSERT_NE(index, GL_INVALID_INDEX) << name;
+    require(index != GL_INVALID_INDEX, name);
     glUniformBlockBinding(program_, index, blocks_);
     glBindBufferBase(GL_UNIFORM_BUFFER, blocks_++, buffer);
 }
 
 int HostPicture::use(const char* uniform) const {
     const GLint location = glGetUniformLocation(program_, uniform);
-    EXPECT_GE(location, 0) << uniform;
+    require(location >= 0, uniform);
     glUseProgram(program_);
     return location;
 }
@@ -145,7 +163,7 @@ std::vector<float> HostPicture::draw(const std::vector<HostRay>& rays) {
         glFramebufferTexture2D(GL_FRAMEBUFFER, targets[i], GL_TEXTURE_2D, textures[i + 1], 0);
     }
     glDrawBuffers(2, targets.data());
-    EXPECT_EQ(glCheckFramebufferStatus(GL_FRAMEBUFFER), GLenum{GL_FRAMEBUFFER_COMPLETE});
+    require(glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE, "no framebuffer");
     glViewport(0, 0, kRaysAcross, rows);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     std::vector<float> drawn(8 * rays.size()), half(4 * padded.size());
@@ -158,7 +176,7 @@ std::vector<float> HostPicture::draw(const std::vector<HostRay>& rays) {
             }
         }
     }
-    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+    require(glGetError() == GL_NO_ERROR, "OpenGL reports an error");
     glDeleteTextures(3, textures.data());
     return drawn;
 }

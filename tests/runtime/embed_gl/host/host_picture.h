@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "tests/runtime/embed_gl/host_context.h"
+#include "tests/runtime/embed_gl/host/host_context.h"
 
 namespace opaline::test {
 
@@ -13,7 +13,17 @@ struct HostRay {
     float from[3], begin, direction[3], end;
 };
 
-/// A host that draws one texel a ray with its own fragment shader, from installed functions.
+/// The text of an installed file of functions.
+std::string read_functions(const std::string& file);
+
+/// Compiles `parts` for a stage of a program. Throws what the driver says of them as `require`.
+void attach_shader(unsigned program, unsigned stage, const std::vector<std::string>& parts);
+
+/// A texture of four floats a texel that a framebuffer draws to, nearest filter; bound.
+unsigned make_float_target(int width, int height);
+
+/// A host that draws one texel a ray with its own fragment shader, from installed functions. All
+/// throw as `require`.
 class HostPicture {
   public:
     /// `files`: of the installed functions; `defines` stand before them. The shader's text ends
@@ -21,6 +31,7 @@ class HostPicture {
     HostPicture(HostApi api, const std::vector<std::string>& files, const std::string& defines,
                 const std::string& see);
     ~HostPicture();
+    HostPicture(HostPicture&& other) noexcept;
     HostPicture(const HostPicture&) = delete;
     HostPicture& operator=(const HostPicture&) = delete;
 
