@@ -5,9 +5,10 @@
    Every function here wants the context that the handle was made in, or one that shares objects
    with it, to be current on the calling thread, and checks it: another one is refused. After each
    call all GL state is as it was before, but for errors: those that the host left unasked are
-   dropped. Calls only enqueue work, nothing waits for the GPU; shaders and vertex arrays of the
-   same context see the results without a barrier of the host's. Call outside of conditional
-   rendering. The rules of opaline.h hold as well; statuses are listed there.
+   dropped. A program must not be marked for deletion while it is current: nothing could bring it
+   back. Calls only enqueue work, nothing waits for the GPU; shaders and vertex arrays of the same
+   context see the results without a barrier of the host's. Call outside of conditional rendering.
+   The rules of opaline.h hold as well; statuses are listed there.
 
    share/opaline/glsl/opaline_surface.glsl holds functions that turn a receiver's radiance into that
    of a surface seen by the eye, opaline_gloss.glsl those of glossy opaque ones (after the former).

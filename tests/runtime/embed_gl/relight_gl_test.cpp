@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "tests/runtime/embed_gl/embedded_asset.h"
 #include "tests/runtime/embed_gl/gl_fixture.h"

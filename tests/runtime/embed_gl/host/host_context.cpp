@@ -5,6 +5,7 @@
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
@@ -77,6 +78,12 @@ void HostContext::make_current() const {
 
 void HostContext::make_none_current() {
     eglMakeCurrent(eglGetCurrentDisplay(), EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
+std::string HostContext::version() const {
+    make_current();
+    const std::string all = reinterpret_cast<const char*>(glGetString(GL_VERSION));
+    return all.substr(0, std::min(all.find(" ("), all.find(" Mesa")));
 }
 
 void* load_gl(const char* name) {

@@ -40,6 +40,8 @@ class HostContext {
 
     void make_current() const;
     static void make_none_current();
+    /// Of OpenGL, as the driver states it: a newer one than was asked for may be compatible.
+    std::string version() const;
 
   private:
     HostContext() = default;

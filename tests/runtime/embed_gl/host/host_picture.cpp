@@ -95,6 +95,8 @@ HostPicture::HostPicture(HostPicture&& other) noexcept
       blocks_(other.blocks_) {}
 
 HostPicture::~HostPicture() {
+    if (program_ == 0) return;
+    glUseProgram(0);  // else it stays until the library takes another one, which cannot go back
     glDeleteProgram(program_);
     glDeleteVertexArrays(1, &array_);
     glDeleteFramebuffers(1, &framebuffer_);

@@ -99,7 +99,7 @@ std::vector<float> draw_receivers(const opaline_asset* asset, const opaline_gl* 
     bind_host_attribute(1, objects.normal, 3, 12);
     bind_host_attribute(2, objects.base_color, 3, 12);
     bind_host_attribute(3, objects.radiance, 3, 16);
-    bind_host_attribute(6, objects.texcoord, 2, 8);
+    if (objects.texcoord != 0) bind_host_attribute(6, objects.texcoord, 2, 8);
     if (objects.openness != 0) {
         glBindBuffer(GL_ARRAY_BUFFER, objects.openness);
         glVertexAttribPointer(4, 2, GL_BYTE, GL_TRUE, 4, nullptr);
@@ -178,6 +178,7 @@ std::vector<float> draw_receivers(const opaline_asset* asset, const opaline_gl* 
     std::vector<float> texels(std::size_t{4} * kWidth * static_cast<std::size_t>(rows));
     glReadPixels(0, 0, kWidth, rows, GL_RGBA, GL_FLOAT, texels.data());
     require(glGetError() == GL_NO_ERROR, "OpenGL reports an error");
+    glUseProgram(0);  // else it stays until the library takes another one, which cannot go back
     glDeleteProgram(program);
     glDeleteTextures(1, &target);
     glDeleteFramebuffers(1, &framebuffer);
