@@ -186,7 +186,8 @@ OPALINE_API opaline_status opaline_gl_get_normal_map(const opaline_gl* gl, uint3
    stand half as far apart; OPALINE_GL_REFUSED if the driver's textures hold no such number; and the
    colour of what they send out by themselves (fire), black with OPALINE_SHADE_WITHOUT_EMISSION.
    Until the first call they only absorb. The volume light must have been made for the handle of the
-   asset that opaline_gl_create had; it is copied from. Nothing happens without volumes, or without OPALINE_GL_WITH_VOLUMES. */
+   asset that opaline_gl_create had; it is copied from. Nothing happens without volumes, or without
+   OPALINE_GL_WITH_VOLUMES. */
 OPALINE_API opaline_status opaline_gl_light_volumes(opaline_gl* gl,
                                                     const opaline_volume_light* volume_light);
 
