@@ -6,6 +6,7 @@
 
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knob.h"
+#include "bake/volumes/degree_rate.h"
 #include "bake/volumes/volume_method.h"
 
 namespace opaline::bake {
@@ -61,9 +62,6 @@ inline constexpr std::array<double, 6> kPathTruths{256, 256, 256, 128, 128, 64};
 // Degree l of 1, 4, 9, ... rows.
 inline double degree_of(double rows) {
     return std::sqrt(rows) - 1;
-}
-inline double rate_of_degree(double mean_cosine) {
-    return mean_cosine == 0 ? 0 : std::log(std::abs(mean_cosine));
 }
 }  // namespace volume_knobs
 
@@ -189,8 +187,8 @@ inline constexpr KnobSpec kVolumeTerms{
     .label = "%g rows of multiple scattering",
     .ladder = volume_knobs::kTermCounts,
     .theory = {.label = "degree of the rows of multiple scattering",
-               .words = "moment g^l of Henyey and Greenstein's phase function",
-               .rate_by_cosine = volume_knobs::rate_of_degree,
+               .words = "moments of Henyey and Greenstein's phase function without its peak",
+               .rate_by_cosine = rate_of_degree,
                .value = volume_knobs::degree_of},
     .matters = volume_knobs::has_rows_by_view,
     .why_idle = volume_knobs::kWhyOnce};

@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
+
+#include "bake/volumes/degree_rate.h"
 
 namespace opaline::bake {
 namespace {
@@ -62,6 +65,52 @@ TEST(ScaledPhase, ADrawnCosineHasTheMomentsOfTheRest) {
         EXPECT_NEAR(first / kDraws, phase.lambda[1], 2e-3) << g;
         EXPECT_LT(largest, 1.7) << g;
     }
+}
+
+// Over the sphere, of p' without its part in the harmonics up to `degree`; by quadrature, without
+// the moments.
+double square_beyond(const ScaledPhase& phase, unsigned degree) {
+    constexpr int kSteps = 20000;
+    std::vector<double> rest(kSteps);
+    const auto cosine = [](int i) { return -1 + (i + 0.5) * 2 / kSteps; };
+    for (int i = 0; i < kSteps; ++i) {
+        rest[static_cast<std::size_t>(i)] = eval_scaled(phase, static_cast<float>(cosine(i)));
+    }
+    double square = 0;
+    for (unsigned l = 0; l <= degree; ++l) {
+        double sum = 0;
+        for (int i = 0; i < kSteps; ++i) {
+            sum += rest[static_cast<std::size_t>(i)] * std::legendre(l, cosine(i)) * 2 / kSteps;
+        }
+        for (int i = 0; i < kSteps; ++i) {
+            rest[static_cast<std::size_t>(i)] -=
+                (2 * l + 1) / 2.0 * sum * std::legendre(l, cosine(i));
+        }
+    }
+    for (const double each : rest) {
+        square += each * each;
+    }
+    return square;
+}
+
+TEST(RateOfDegree, IsThatOfWhatRowsLackOfThePhaseFunction) {
+    for (const float g : {-0.6f, 0.3f, 0.5f, 0.85f}) {
+        const ScaledPhase phase = scale_phase(henyey_greenstein(g));
+        const double all = square_beyond(phase, 0), last = square_beyond(phase, phase.degree - 1);
+        EXPECT_NEAR(rate_of_degree(g), std::log(last / all) / 2 / (phase.degree - 1), 2e-3) << g;
+    }
+}
+
+TEST(RateOfDegree, ErrorsMeasuredOfACloudFallAtLeastAsFast) {
+    // RMS of light scattered more than once, K = 1 and 16 against 25 (tests/bench/RESULTS.md).
+    EXPECT_LE(std::log(0.015 / 0.37) / 3, rate_of_degree(0.5));
+    EXPECT_LE(std::log(0.051 / 0.69) / 3, rate_of_degree(0.85));
+    EXPECT_LT(rate_of_degree(0.85), -0.4);
+}
+
+TEST(RateOfDegree, ScatteringWithoutDegreesHasNone) {
+    EXPECT_EQ(rate_of_degree(0), 0);
+    EXPECT_EQ(rate_of_degree(0.004), 0);
 }
 
 }  // namespace
