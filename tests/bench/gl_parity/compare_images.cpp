@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -22,8 +23,10 @@ using test::HostRay;
 
 constexpr int kSamples = 300;
 
-// The largest of three bands, each as a share of 1 + `scale` times the CPU's.
+// The largest of three bands, each as a share of 1 + `scale` times the CPU's; infinite where one
+// is not a number, which a maximum may pass over.
 double difference_of(const float* gl, Rgb cpu, float scale) {
+    if (!std::isfinite(gl[0] + gl[1] + gl[2])) return std::numeric_limits<double>::infinity();
     return static_cast<double>(std::max({std::abs(gl[0] - cpu.r) / (1 + scale * cpu.r),
                                          std::abs(gl[1] - cpu.g) / (1 + scale * cpu.g),
                                          std::abs(gl[2] - cpu.b) / (1 + scale * cpu.b)}));

@@ -30,6 +30,7 @@ class Report {
     /// Something that cannot be compared, and why.
     void note(const std::string& text) { notes_.push_back(text); }
 
+    /// Nothing is beyond its tolerance, and of no kind more than one value in fifty is a step.
     bool holds() const;
     /// The table's row, then a line for what is beyond its tolerance, for steps and for each note.
     std::string text(const std::string& file, const std::string& context) const;
