@@ -103,6 +103,17 @@ struct PlacedWaves {
     }
 };
 
+TEST(SunColumns, VolumesKnowTheirNumberInTheAssetWhereOneBeforeThemIsEmpty) {
+    formats::Volumes volumes = test::make_volumes(test::kSize);
+    test::add_volume(volumes, waves(4));
+    test::add_volume(volumes, waves(4));
+    volumes.records[0].brick_count = 0;
+    const std::vector<SunColumns> placed = place_volumes(volumes.view());
+    ASSERT_EQ(placed.size(), 1u);
+    EXPECT_EQ(placed[0].volume, 1u);
+    EXPECT_EQ(placed[0].lattice.record, &volumes.view().records[1]);
+}
+
 TEST(SunColumns, AreIntegralsOfTheDensityTowardEachSun) {
     const std::vector<Vec3> suns = some_suns();
     for (const std::uint32_t spacing : {1u, 2u, 4u, 8u}) {
