@@ -11,7 +11,7 @@
 
 int main(int argc, char** argv) {
     const double voxel = argc > 2 ? std::atof(argv[2]) : 3.5;
-    if (argc < 2 || !(voxel >= 1 && voxel <= 100)) {
+    if (argc < 2 || argv[1][0] == '-' || !(voxel >= 1 && voxel <= 100)) {
         std::fputs("usage: opaline_write_cloud OUT.vdb [VOXEL], VOXEL from 1 to 100 m\n", stderr);
         return 2;
     }
