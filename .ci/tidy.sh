@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # tidy.sh [BASE]: clang-tidy on the sources that changed since the commit BASE. By default that is where the branch
-# left origin/main or, on main itself, 20 commits ago. At most 15 files, those with most changed lines first.
+# left origin/main or, on main itself, 20 commits ago. At most 10 files, those with most changed lines first.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
-most_files=15
+most_files=10
 build=build-tidy
 seconds_per_file=300
 
