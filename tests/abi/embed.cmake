@@ -12,7 +12,7 @@ endfunction()
 file(REMOVE_RECURSE ${BINARY})
 set(bake_packages embree OpenMesh OpenEXR Imath TinyGLTF glm TBB PNG JPEG CLI11 fmt nlohmann_json)
 list(TRANSFORM bake_packages REPLACE "(.+)" "-DCMAKE_DISABLE_FIND_PACKAGE_\\1=ON")
-# Not optimised, ten sources at a time where they allow it: a third of the time, and nothing here depends on speed.
+# Not optimised, ten sources at a time where they allow it: half of the time, and nothing here depends on speed.
 run(${CMAKE_COMMAND} -S ${SOURCE} -B ${BINARY}/build -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug
     -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=10
     -DOPALINE_BUILD_BAKE=OFF -DOPALINE_BUILD_TESTS=OFF ${bake_packages}
