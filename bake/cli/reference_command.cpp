@@ -131,7 +131,8 @@ Status report_lost_paths(const ReferenceCommand& options, const bake::Estimate& 
     }
     return report_warnings({formats::make_warning(
         options.scene, "",
-        fmt::format("{:.2g} % of the paths left a body that is not closed, and count as black",
+        fmt::format("{:.2g} % of the paths left a body that is not closed: what leaves through its "
+                    "holes counts as bright as the rest",
                     100 * lost),
         "close the holes of its mesh")});
 }

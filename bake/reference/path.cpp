@@ -188,14 +188,41 @@ std::uint32_t draw_key(const PathSpace& space, RandomStream& random) {
                : 0;
 }
 
+bool is_finite(glm::vec3 v) {
+    return std::isfinite(v.x + v.y + v.z);
+}
+
+// The path begins again where it entered the body that it is in, with the throughput it has.
+void enter_again(Path& path, const Path& entry) {
+    const glm::vec3 beta = path.beta, radiance = path.radiance;
+    path = entry;
+    path.beta = beta;
+    path.radiance = radiance;
+}
+
+// What leaves a body through a hole counts as the mean of the rest: with w the mean share that is
+// lost, entering again makes 1 + w + w^2 + ... = 1 / (1 - w) of what reaches the surface.
 PathSample finish(const PathSpace& space, Path& path, RandomStream& random) {
-    while (advance(space, path, random)) {
+    constexpr std::uint32_t kMostEntries = 8;  // of bodies that are mostly hole
+    Path entry = path;
+    std::uint32_t entries = 0;
+    while (true) {
+        const bool was_outside = path.stack.empty();
+        if (advance(space, path, random)) {
+            if (was_outside && !path.stack.empty()) {
+                entry = path;
+            }
+        } else if (path.lost && entries < kMostEntries && is_finite(path.beta)) {
+            enter_again(path, entry);
+            ++entries;
+        } else {
+            break;
+        }
     }
-    const float sum = path.radiance.x + path.radiance.y + path.radiance.z;
-    if (!std::isfinite(sum)) {
+    if (!is_finite(path.radiance)) {
         return {.lost = true, .events = path.events};
     }
-    return {path.radiance, path.lost, path.events, path.sky, path.direction};
+    return {path.radiance, path.lost || entries > 0, path.events, path.sky, path.direction};
 }
 
 }  // namespace

@@ -60,7 +60,9 @@ struct ReferenceReceiver {
 /// One sample of radiance, with the state of its path.
 struct PathSample {
     glm::vec3 radiance{0};  ///< [W m^-2 sr^-1], unbiased
-    bool lost = false;      ///< it left a body through a hole, or a number overflowed
+    /// It left a body through a hole, and began again where it had entered that body, so that what
+    /// leaves there is as bright as the mean of the rest; or a number overflowed: black.
+    bool lost = false;
     /// scattering events and surfaces on the path: a measure of the work
     std::uint32_t events = 0;
     /// What light of radiance 1 from `to_sky` alone, unit, would add where the path ended in the

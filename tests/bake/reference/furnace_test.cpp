@@ -50,6 +50,30 @@ TEST(ReferenceFurnace, RefractingBodyThatAbsorbsNothingIsAsBrightAsItsSurroundin
     }
 }
 
+// A bowl: of all its light some 8 % leave through the opening.
+TEST(ReferenceFurnace, WhatLeavesThroughAHoleIsAsBrightAsTheRest) {
+    for (const float eta : {1.5f, 1.0f}) {
+        Primitive bowl = make_sphere(2);
+        std::vector<std::uint32_t> kept;
+        for (std::size_t i = 0; i + 2 < bowl.index.size(); i += 3) {
+            if (bowl.position[bowl.index[i]].y > -0.7f) {
+                kept.insert(kept.end(), &bowl.index[i], &bowl.index[i] + 3);
+            }
+        }
+        ASSERT_LT(kept.size(), bowl.index.size());
+        bowl.index = kept;
+        Scene input = make_scene({std::move(bowl)});
+        input.materials[0].medium = make_medium(3, 1, 0, eta);
+        const auto body = make_fixture(std::move(input), make_white_sky());
+        const auto estimate = opaline::tests::estimate(*body, 8, 2000);
+        EXPECT_GT(estimate.lost, 8u * 2000 / 50) << eta;
+        for (const bake::Moments& m : estimate.pixel) {
+            EXPECT_NEAR(m.mean.y, 1, 3 * standard_error(m) + 0.002) << eta;
+            EXPECT_LT(standard_error(m), 0.02) << eta;
+        }
+    }
+}
+
 // Here the light is sampled too: weights of two strategies, which vary from path to path, add up.
 TEST(ReferenceFurnace, MatchedBodyThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
     for (const float g : {0.0f, 0.7f, -0.4f}) {
