@@ -4,6 +4,7 @@
 
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
+#include "tests/support/walk_bake.h"
 
 namespace opaline::bake {
 namespace {
@@ -79,6 +80,20 @@ TEST(Mesh, AHoleIsReportedAndDarkensItsSurroundingsOnly) {
     EXPECT_NE(faults_of_mesh(result)[0].fault.find("open at"), std::string::npos);
     EXPECT_TRUE(all_finite(result.asset));
     EXPECT_LT(relative_rms(studio(result), studio(whole)), 0.05);
+}
+
+TEST(Mesh, WhatWalksLoseThroughAHoleIsStated) {
+    Primitive open = tests::make_sphere(2);
+    const auto losses = [](const Primitive& body) {
+        std::string text;
+        for (const auto& warning : bake({body}, bake_by(kWalked, 20000)).warnings) {
+            text += warning.fault.find("random walks") == std::string::npos ? "" : warning.fault;
+        }
+        return text;
+    };
+    EXPECT_EQ(losses(open), "");
+    open.index.resize(open.index.size() - 60);  // 20 of 320 triangles
+    EXPECT_NE(losses(open).find("leave through holes"), std::string::npos);
 }
 
 TEST(Mesh, VerticesThatStandTwiceLookTheSame) {

@@ -16,6 +16,7 @@
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
+#include "bake/effects/multiple/unfinished_walks.h"
 #include "bake/effects/multiple/view_terms.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/scattering/fresnel.h"
@@ -242,6 +243,14 @@ void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>&
     }
     if (model_of(inputs.own) == MultipleModel::dipole) {
         warn_of_thin_parts(inputs, profile_of(inputs.own), warnings);
+    }
+    if (inputs.own.samples != nullptr) {
+        const WalkCounts& counts =
+            static_cast<const Samples&>(*inputs.own.samples).stage.walks.counts;
+        if (auto warning =
+                describe_unfinished(inputs.bake.scene.materials[inputs.material].name, counts)) {
+            warnings.push_back(std::move(*warning));
+        }
     }
 }
 

@@ -1,0 +1,51 @@
+#include "bake/effects/multiple/unfinished_walks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace opaline::bake {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+WalkCounts lose(std::uint64_t lost, std::uint64_t endless, double unfinished) {
+    WalkCounts counts;
+    counts.walks = 1000;
+    counts.lost = lost;
+    counts.endless = endless;
+    counts.unfinished = unfinished;
+    return counts;
+}
+
+TEST(UnfinishedWalks, OfALittleLightNothingIsSaid) {
+    EXPECT_FALSE(describe_unfinished("Wax", {}));
+    EXPECT_FALSE(describe_unfinished("Wax", lose(3, 0, 0.9)));
+}
+
+TEST(UnfinishedWalks, LightThatLeavesThroughHolesIsStated) {
+    const auto warning = describe_unfinished("Wax", lose(30, 0, 16));
+    ASSERT_TRUE(warning);
+    EXPECT_EQ(warning->where, "material 'Wax'");
+    EXPECT_THAT(warning->fault,
+                AllOf(HasSubstr("of 1000 random walks 30 leave through holes of its mesh: 1.6 %"),
+                      HasSubstr("as bright as the rest"), Not(HasSubstr("too often"))));
+    EXPECT_EQ(warning->remedy, "close the surface");
+}
+
+TEST(UnfinishedWalks, OfAClosedBodyNobodyIsAskedToCloseIt) {
+    const auto warning = describe_unfinished("Wax", lose(0, 20, 9));
+    ASSERT_TRUE(warning);
+    EXPECT_THAT(warning->fault, AllOf(HasSubstr("20 scatter too often"), Not(HasSubstr("holes"))));
+    EXPECT_THAT(warning->remedy, HasSubstr("--check-model"));
+}
+
+TEST(UnfinishedWalks, OfABodyThatIsMostlyHoleLightIsMissing) {
+    const auto warning = describe_unfinished("Wax", lose(700, 0, 600));
+    ASSERT_TRUE(warning);
+    EXPECT_THAT(warning->fault, AllOf(HasSubstr("60.0 %"), HasSubstr("is missing")));
+}
+
+}  // namespace
+}  // namespace opaline::bake
