@@ -27,6 +27,14 @@ glm::dmat3 cofactors(const glm::dmat3& m) {
     return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
 }
 
+// [m] from the scene's origin: volumes of bodies are finite in single precision, and rays are
+// traced (Embree takes none that starts beyond 1.8e18).
+constexpr float kFarthest = 1e12f;
+
+bool is_near(glm::vec3 p) {
+    return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
+}
+
 void place_positions(const PrimitiveData& data, const glm::dmat4& world, double metres_per_unit,
                      glm::dvec3 origin, Primitive& out, Report& report) {
     const std::size_t count = data.position.size() / 3;
@@ -35,7 +43,7 @@ void place_positions(const PrimitiveData& data, const glm::dmat4& world, double 
         const glm::dvec3 p =
             metres_per_unit * glm::dvec3(world * glm::dvec4(triple(data.position, i), 1.0));
         out.position[i] = glm::vec3(p - origin);
-        if (!is_finite(glm::dvec3(glm::vec3(p))) || !is_finite(glm::dvec3(out.position[i]))) {
+        if (!is_finite(glm::dvec3(glm::vec3(p))) || !is_near(out.position[i])) {
             report.error(out.name,
                          "vertex " + std::to_string(i) + " is too far away for single precision",
                          "scale the scene down");
