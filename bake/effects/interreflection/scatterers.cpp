@@ -8,6 +8,7 @@
 #include "bake/effects/interreflection/bounce_tree.h"
 #include "bake/effects/interreflection/even_choice.h"
 #include "bake/plan/surface_albedo.h"
+#include "bake/receivers/other_side.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/texture_footprint.h"
@@ -25,7 +26,8 @@ struct Seen {
     SidePoint point;
 };
 
-std::vector<Receiver> draw_probes(std::span<const ReceiverSet> sets) {
+// Sheets look to both sides: within a lantern its inner side alone sees anything.
+std::vector<Receiver> draw_probes(const formats::Scene& scene, std::span<const ReceiverSet> sets) {
     const std::size_t all = count_receivers(sets);
     const std::size_t count = std::min(all, kProbes);
     std::vector<Receiver> probes;
@@ -33,7 +35,11 @@ std::vector<Receiver> draw_probes(std::span<const ReceiverSet> sets) {
     for (std::size_t i = 0; i < count; ++i) {
         const auto running = static_cast<std::uint32_t>((2 * i + 1) * all / (2 * count));
         const ReceiverSet& set = set_of(sets, running);
-        probes.push_back(set.outside[running - set.first]);
+        const std::size_t own = running - set.first;
+        probes.push_back(set.outside[own]);
+        if (scene.materials[set.material].sheet) {
+            probes.push_back(other_side(set.outside[own], set.inside[own]));
+        }
     }
     return probes;
 }
@@ -104,7 +110,7 @@ SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::s
 
 std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
                                        std::uint64_t& rays) {
-    const std::vector<Receiver> probes = draw_probes(inputs.bake.receivers);
+    const std::vector<Receiver> probes = draw_probes(inputs.bake.scene, inputs.bake.receivers);
     struct Part {
         std::vector<Seen> seen;
         std::uint64_t rays = 0;

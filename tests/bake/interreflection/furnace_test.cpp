@@ -33,17 +33,23 @@ BakeOptions furnace_options(std::vector<std::string> effects) {
 }
 
 // A closed box of thin walls, r of the light reflected, t let through, under a sky of radiance 1.
-// Inside every ray meets a wall: L = r L + t.
-TEST(BounceFurnace, InsideAClosedBoxOfThinWallsRadianceIsEven) {
-    formats::Scene box = tests::make_scene({tests::make_cube(3, true)});
-    box.materials[0].base_color = {1, 1, 1};
-    box.materials[0].sheet =
-        formats::Sheet{.reflect = {0.5f, 0.5f, 0.5f}, .transmit = {0.3f, 0.3f, 0.3f}};
-    const BakeResult baked = tests::bake_scene(box, furnace_options({"sheet", "interreflection"}));
-    const Deviation d =
-        deviation_from(0.3 / (1 - 0.5), tests::relight(baked.asset.view(), "white"));
-    EXPECT_LT(d.rms, 0.01);
-    EXPECT_LT(std::abs(d.mean), 0.005);
+// Inside every ray meets a wall: L_in = r L_in + t; outside L = r + t L_in. Which of both sides is
+// the front must not matter.
+TEST(BounceFurnace, RadianceOfAClosedBoxOfThinWallsIsEvenInsideAndOutside) {
+    constexpr double kReflected = 0.5, kTransmitted = 0.3;
+    constexpr double kInside = kTransmitted / (1 - kReflected);
+    for (const bool inward : {true, false}) {
+        formats::Scene box = tests::make_scene({tests::make_cube(3, inward)});
+        box.materials[0].base_color = {1, 1, 1};
+        box.materials[0].sheet =
+            formats::Sheet{.reflect = {0.5f, 0.5f, 0.5f}, .transmit = {0.3f, 0.3f, 0.3f}};
+        const BakeResult baked =
+            tests::bake_scene(box, furnace_options({"sheet", "interreflection"}));
+        const Deviation d = deviation_from(inward ? kInside : kReflected + kTransmitted * kInside,
+                                           tests::relight(baked.asset.view(), "white"));
+        EXPECT_LT(d.rms, 0.01) << inward;
+        EXPECT_LT(std::abs(d.mean), 0.005) << inward;
+    }
 }
 
 // An integrating sphere: from any place of its wall the hole has the same form factor f, its share
