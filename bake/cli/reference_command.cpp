@@ -357,6 +357,7 @@ void add_reference_command(CLI::App& app, Job& job) {
     command
         ->add_option("--media", options->media,
                      "what translucent materials are made of; volumes of smoke or cloud")
+        ->check(file_name())
         ->option_text("FILE.json");
     command
         ->add_option("--metres-per-unit", options->metres_per_unit,

@@ -95,6 +95,7 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
         .add_option(
             "--media", options.media,
             "what translucent materials are made of; formats/media/README.md lists the keys")
+        ->check(file_name())
         ->option_text("FILE.json");
     command
         .add_option(
