@@ -200,7 +200,8 @@ void add_relight_command(CLI::App& app, Job& job) {
     command
         ->add_option("-o,--output", options->output,
                      ".csv: primitive,vertex,r,g,b, and where the file has volumes "
-                     "OUT-volumes.csv: volume,i,j,k,r,g,b of every node; .ply: points with "
+                     "OUT-volumes.csv: volume,i,j,k,r,g,b of every node, volumes numbered as "
+                     "`opaline info` does; .ply: points with "
                      "colours; .exr: one pixel per "
                      "receiver, 1024 a row")
         ->required()

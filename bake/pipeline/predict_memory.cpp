@@ -4,6 +4,7 @@
 
 #include "bake/layers/layer_work.h"
 #include "bake/pipeline/cost_model.h"
+#include "bake/volumes/volume_parts.h"
 #include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
@@ -61,8 +62,9 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
         }
         counts.translucent_rows += vertices * (terms + (knobs.separate_terms ? 1 : 0));
     }
-    const std::vector<VolumeLayout> layouts = plan_volumes(scene, knobs).layouts;
-    const std::vector<VolumeWork> works = count_volume_work(scene, layouts, knobs);
+    const auto [parted, layouts] = part_volumes(scene, plan_volumes(scene, knobs).layouts, knobs);
+    const std::vector<VolumeWork> works =
+        count_volume_work(parted ? *parted : scene, layouts, knobs);
     for (const VolumeWork& work : works) {
         counts.volume_bytes += volume_memory(work, knobs);
     }

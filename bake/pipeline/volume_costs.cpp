@@ -1,9 +1,11 @@
 #include "bake/pipeline/volume_costs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "bake/pipeline/volume_stages.h"
 #include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/volume_parts.h"
 
 namespace opaline::bake {
 namespace {
@@ -41,8 +43,10 @@ double glow_bytes(const VolumeWork& work, const VolumeLayout& layout) {
 
 CostedVolumes make_costed_volumes(const CostRequest& request) {
     CostedVolumes volumes;
-    volumes.layouts = plan_volumes(request.scene, request.knobs).layouts;
-    volumes.works = count_volume_work(request.scene, volumes.layouts, request.knobs);
+    VolumeParts parts = part_volumes(
+        request.scene, plan_volumes(request.scene, request.knobs).layouts, request.knobs);
+    volumes.works = count_volume_work(parts.scene_or(request.scene), parts.layouts, request.knobs);
+    volumes.layouts = std::move(parts.layouts);
     return volumes;
 }
 
@@ -59,7 +63,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
                           request.facts.receivers};
     const auto for_each = [&](std::string_view name, auto&& visit) {
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            visit(volumes.works[i], payer_of(volume_plan, volumes.layouts[i].volume, name));
+            visit(volumes.works[i], payer_of(volume_plan, volumes.layouts[i].whole, name));
         }
     };
     bill.open("light in volumes");
@@ -72,20 +76,20 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         bill.open("surfaces that volumes see");
         const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
         bill.add(seen_surfaces_work(input, volumes.works, request.facts.receivers, row_count),
-                 payer_of(volume_plan, first->volume, "surface-volume"));
+                 payer_of(volume_plan, first->whole, "surface-volume"));
     }
     bill.open(scattering_stage(volumes.layouts));
     for (std::size_t i = 0; i < volumes.works.size(); ++i) {
         // Walks and rows that light of the sky does not need are those of surfaces.
         const VolumeLayout& layout = volumes.layouts[i];
-        PlanEntry* const payer = payer_of(volume_plan, layout.volume,
+        PlanEntry* const payer = payer_of(volume_plan, layout.whole,
                                           layout.sees_sky ? "volume-multiple" : "surface-volume");
         bill.add(scattering_work(input, volumes.works[i]), payer);
         bill.add_bytes(scattered_row_bytes(volumes.works[i], request.knobs), payer);
     }
     if (std::ranges::any_of(volumes.layouts, &VolumeLayout::has_nodes)) {
         const VolumeCheckOptions check =
-            volume_check_effort(request.scene, volumes.layouts, request.knobs);
+            volume_check_effort(volumes.works, volumes.layouts, request.knobs);
         double entries = 0;  // of all rows, once for each light
         for (const VolumeWork& work : volumes.works) {
             entries +=
@@ -98,13 +102,13 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     if (count_glowing(volumes.layouts) > 0) {
         bill.open("light of volumes");
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].volume, "emitters");
+            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].whole, "emitters");
             bill.add(glow_work(input, volumes.works[i], volumes.layouts[i]), payer);
             bill.add_bytes(glow_bytes(volumes.works[i], volumes.layouts[i]), payer);
         }
         bill.open("self-check of light of volumes");
         const VolumeCheckOptions check =
-            volume_check_effort(request.scene, volumes.layouts, request.knobs);
+            volume_check_effort(volumes.works, volumes.layouts, request.knobs);
         bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision});
     }
     if (request.facts.receivers > 0) {
@@ -113,7 +117,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
             const VolumeLayout& layout = volumes.layouts[i];
             bill.add(sent_light_work(input, volumes.works[i], layout, request.facts.receivers),
-                     payer_of(volume_plan, layout.volume, "volume-surface"));
+                     payer_of(volume_plan, layout.whole, "volume-surface"));
         }
     }
 }

@@ -9,6 +9,7 @@
 #include "bake/volumes/bake_volumes.h"
 #include "bake/volumes/dim_surfaces.h"
 #include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/volume_parts.h"
 #include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
@@ -23,20 +24,27 @@ formats::Error interrupted_volumes() {
 struct BakedVolumes {
     Knobs knobs;
     VolumePlan plan;
+    VolumeParts parts;  // of the plan's layouts
     formats::Volumes volumes;
     std::optional<VolumeErrorReport> error;  // nothing: they scatter no light
 
     double rms() const { return error ? error->rms_relative : 0; }
+    VolumeCheckOptions check_effort(const formats::Scene& scene) const {
+        return volume_check_effort(count_volume_work(parts.scene_or(scene), parts.layouts, knobs),
+                                   parts.layouts, knobs);
+    }
 };
 
 formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const Knobs& knobs,
                                              const Context& context, BakeResult& result) {
-    BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}};
+    BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}, {}};
+    baked.parts = part_volumes(inputs.scene, baked.plan.layouts, knobs);
     std::vector<MethodMeasure> measured;
     const formats::AssetView surfaces = result.asset.view();
     const ShownSurfaces shown{inputs.scene, inputs.layouts, inputs.receivers, surfaces};
-    auto volumes = bake_volumes({inputs.scene, inputs.rays, baked.plan.layouts, knobs, &shown},
-                                context, result.stages, &measured);
+    auto volumes = bake_volumes(
+        {baked.parts.scene_or(inputs.scene), inputs.rays, baked.parts.layouts, knobs, &shown},
+        context, result.stages, &measured);
     if (!volumes) {
         return std::move(volumes).error();
     }
@@ -54,9 +62,8 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
     view.volumes = baked.volumes.view();
     auto error =
         run_stage(result.stages, "self-check of volumes", "self-check", [&](std::uint64_t& traced) {
-            auto found = check_volumes(inputs.scene, view,
-                                       volume_check_effort(inputs.scene, baked.plan.layouts, knobs),
-                                       context);
+            auto found =
+                check_volumes(inputs.scene, view, baked.check_effort(inputs.scene), context);
             traced += found ? found->events : 0;
             return found;
         });
@@ -94,16 +101,14 @@ formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const 
 }
 
 // How far the light of volumes errs, where there is any.
-formats::Status measure_glow(const VolumeStages& inputs, std::span<const VolumeLayout> layouts,
+formats::Status measure_glow(const VolumeStages& inputs, const VolumeCheckOptions& effort,
                              const Context& context, BakeResult& result) {
     if (result.glowing_volumes.empty()) {
         return formats::ok_status();
     }
     auto error = run_stage(
         result.stages, "self-check of light of volumes", "self-check", [&](std::uint64_t& traced) {
-            auto found =
-                check_glow(inputs.scene, result.asset.view(),
-                           volume_check_effort(inputs.scene, layouts, result.knobs), context);
+            auto found = check_glow(inputs.scene, result.asset.view(), effort, context);
             traced += found ? found->events : 0;
             return found;
         });
@@ -127,8 +132,9 @@ void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& kn
             }
         }
     }
-    const auto& layouts = baked.plan.layouts;
-    if (!layouts.empty() && std::ranges::all_of(layouts, [&](const VolumeLayout& layout) {
+    const auto& layouts = baked.parts.layouts;
+    if (!baked.parts.scene && !layouts.empty() &&
+        std::ranges::all_of(layouts, [&](const VolumeLayout& layout) {
             return layout.spacing == layouts.front().spacing;
         })) {
         knobs.set(kVolumeSpacing, layouts.front().spacing);
@@ -137,7 +143,7 @@ void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& kn
 
 }  // namespace
 
-VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
+VolumeCheckOptions volume_check_effort(std::span<const VolumeWork> works,
                                        std::span<const VolumeLayout> layouts, const Knobs& knobs) {
     VolumeCheckOptions options;
     options.seed = knobs.seed;
@@ -149,7 +155,7 @@ VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
         return options;
     }
     constexpr double kShare = 0.08, kLeast = 2e5, kMost = 2e7;
-    const double bake = count_in_scatterings(count_volume_work(scene, layouts, knobs));
+    const double bake = count_in_scatterings(works);
     options.max_events = static_cast<std::uint64_t>(std::clamp(kShare * bake, kLeast, kMost));
     return options;
 }
@@ -202,9 +208,10 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
             result.glowing_volumes.push_back(inputs.scene.volumes[layout.volume].emitter);
         }
     }
-    const std::vector<VolumeLayout> layouts = std::move(baked->plan.layouts);
+    const VolumeParts& parts = baked->parts;
     result.asset.volumes = std::move(baked->volumes);
-    if (auto status = measure_glow(inputs, layouts, context, result); !status) {
+    if (auto status = measure_glow(inputs, baked->check_effort(inputs.scene), context, result);
+        !status) {
         return status;
     }
     result.volume_plan = std::move(baked->plan.entries);
@@ -213,11 +220,12 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
         return formats::ok_status();
     }
     const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t& rays) {
-        if (std::ranges::none_of(layouts, &VolumeLayout::lights_surfaces)) {
+        if (std::ranges::none_of(parts.layouts, &VolumeLayout::lights_surfaces)) {
             return dim_surfaces(inputs.scene, result.knobs, nullptr, context, result.asset, rays);
         }
-        const SentLight light = make_sent_light(inputs.scene, inputs.rays, layouts,
-                                                result.asset.volumes.view(), result.knobs);
+        const SentLight light =
+            make_sent_light(parts.scene_or(inputs.scene), inputs.rays, parts.layouts,
+                            result.asset.volumes.view(), result.knobs);
         const VertexLight sent{light, inputs.receivers};
         return dim_surfaces(inputs.scene, result.knobs, &sent, context, result.asset, rays);
     });

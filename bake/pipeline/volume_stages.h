@@ -7,6 +7,7 @@
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/plan_volumes.h"
+#include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 
@@ -21,7 +22,8 @@ struct VolumeStages {
 
 /// Effort of the check of a bake's volumes: with Knobs::check_model until the noise is small;
 /// otherwise as many events as take about a twelfth of the bake's time, at least 200 000.
-VolumeCheckOptions volume_check_effort(const formats::Scene& scene,
+/// `works`: of the layouts.
+VolumeCheckOptions volume_check_effort(std::span<const VolumeWork> works,
                                        std::span<const VolumeLayout> layouts, const Knobs& knobs);
 
 /// The presets' values of all volumes' knobs that the user did not give, and the quality that

@@ -143,7 +143,7 @@ MethodMeasure measure_method(const VolumePathSpace& space, const formats::Sparse
         gather_walks(other, receiver, compared[i].others);
     }
     MethodMeasure measure = compare_methods(compared);
-    measure.volume = layout.volume;
+    measure.volume = layout.whole;
     measure.method = measure.path_error <= budget && count > 0 ? VolumeMethod::path_integration
                                                                : VolumeMethod::walks;
     return measure;

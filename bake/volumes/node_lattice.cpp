@@ -160,16 +160,17 @@ NodesAround nodes_around(const NodeLattice& lattice, glm::vec3 index) {
     return around;
 }
 
-std::uint32_t choose_spacing(const Grid& grid, double sigma_t, double depth) {
+std::uint32_t choose_spacing(std::span<const float> values, const glm::dmat4& to_scene,
+                             double sigma_t, double depth) {
     double sum = 0, squares = 0;
-    for (const float density : grid.value) {
+    for (const float density : values) {
         sum += static_cast<double>(density);
         squares += static_cast<double>(density) * static_cast<double>(density);
     }
     const double typical = sum > 0 ? sigma_t * squares / sum : 0;
-    const double edge = std::max({glm::length(glm::dvec3(grid.to_scene[0])),
-                                  glm::length(glm::dvec3(grid.to_scene[1])),
-                                  glm::length(glm::dvec3(grid.to_scene[2]))});
+    const double edge =
+        std::max({glm::length(glm::dvec3(to_scene[0])), glm::length(glm::dvec3(to_scene[1])),
+                  glm::length(glm::dvec3(to_scene[2]))});
     std::uint32_t spacing = 1;
     while (spacing < 8 && typical * edge * 2 * spacing <= depth) {
         spacing *= 2;

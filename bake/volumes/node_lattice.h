@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "formats/sparse_grid.h"
@@ -39,8 +40,10 @@ struct NodesAround {
 /// `index`: in index coordinates. Where there is density all eight nodes are there.
 NodesAround nodes_around(const NodeLattice& lattice, glm::vec3 index);
 
-/// The largest spacing of 1, 2, 4 and 8 at which the typical extinction, weighted by itself, times
-/// the distance between nodes is at most `depth` [1]; `spacing` 1 if there is none.
-std::uint32_t choose_spacing(const formats::SparseGrid<float>& grid, double sigma_t, double depth);
+/// The largest spacing of 1, 2, 4 and 8 at which the typical extinction of voxels with densities
+/// `values`, weighted by itself, times the distance between nodes is at most `depth` [1]; 1 if
+/// there is none. `to_scene`: SparseGrid::to_scene.
+std::uint32_t choose_spacing(std::span<const float> values, const glm::dmat4& to_scene,
+                             double sigma_t, double depth);
 
 }  // namespace opaline::bake

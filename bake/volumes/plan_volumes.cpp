@@ -61,11 +61,11 @@ std::uint32_t spacing_of(const formats::Volume& volume, const DensityVolume& own
     if (const double given = knobs[kVolumeSpacing]; given > 0) {
         return static_cast<std::uint32_t>(given);
     }
-    constexpr std::array<double, 4> kDepth{2, 1, 0.5, 0.25};
     const formats::Rgb s = volume.sigma_t;
     const auto quality = static_cast<std::size_t>(knobs.quality);
-    std::uint32_t spacing = choose_spacing(
-        volume.density, static_cast<double>(std::max({s.r, s.g, s.b})), kDepth[quality]);
+    std::uint32_t spacing =
+        choose_spacing(volume.density.value, volume.density.to_scene,
+                       static_cast<double>(std::max({s.r, s.g, s.b})), spacing_depth(knobs));
     // Where albedos differ, they are known at nodes alone.
     constexpr std::array<double, 4> kDetail{0.2, 0.1, 0.05, 0.02};
     while (lost_albedo_detail(own, spacing) > kDetail[quality]) {
@@ -227,6 +227,11 @@ const char* scattering_stage(std::span<const VolumeLayout> layouts) {
                                                        : "walks through volumes";
 }
 
+double spacing_depth(const Knobs& knobs) {
+    constexpr std::array<double, 4> kDepth{2, 1, 0.5, 0.25};
+    return kDepth[static_cast<std::size_t>(knobs.quality)];
+}
+
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     VolumePlan plan;
     const DensitySpace space = make_density_space(scene);
@@ -239,7 +244,8 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         const ScaledPhase phase = scale_phase(volume.phase);
         PlanEntry once = decide("volume-single", subject, most.once, knobs);
         PlanEntry often = decide("volume-multiple", subject, most.once * most.once, knobs);
-        VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
+        VolumeLayout layout{
+            .volume = v, .whole = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
         if (once.on) {
             layout.once_terms = once.terms = phase.harmonics();
             once.reason =

@@ -17,6 +17,7 @@ namespace opaline::bake {
 /// What is baked of one volume.
 struct VolumeLayout {
     std::uint32_t volume = 0;       ///< index into Scene::volumes
+    std::uint32_t whole = 0;        ///< the same before they were parted (volume_parts.h)
     std::uint32_t once_terms = 0;   ///< K_s; 0: no light that was scattered once
     std::uint32_t often_terms = 0;  ///< K_m; 0: none that was scattered more often
     std::uint32_t spacing = 1;      ///< voxels between nodes
@@ -50,6 +51,9 @@ formats::Status check_bakeable(const formats::Scene& scene);
 /// alpha the largest albedo, under light of radiance 1: light scattered once or more is at most
 /// alpha d, light scattered more than once at most (alpha d)^2 (README.md, "Bounds").
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
+
+/// Optical depth between two nodes of what is typically dense there.
+double spacing_depth(const Knobs& knobs);
 
 /// Whether surfaces receive light that volumes scatter, by the entries of a plan.
 bool lights_surfaces(std::span<const PlanEntry> plan);

@@ -72,7 +72,7 @@ inline constexpr KnobSpec kVolumeSpacing{
     .placeholder = "V",
     .help =
         "voxels between points of a volume at which its light is baked: 1, 2, 4 or 8; default: so "
-        "many that little light is lost from one to the next",
+        "many that little light is lost from one to the next, which is fewer where it is dense",
     .lowest = 1,
     .highest = 8,
     .zero_is_auto = true,

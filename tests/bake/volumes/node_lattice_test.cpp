@@ -67,10 +67,10 @@ INSTANTIATE_TEST_SUITE_P(Spacings, NodeLatticeOf, testing::Values(1u, 2u, 4u, 8u
 
 TEST(NodeLattice, NodesStandCloserInDenserMedia) {
     const formats::SparseGrid<float> grid = tests::make_ball_grid(1, 0.1);
-    EXPECT_EQ(choose_spacing(grid, 1e-3, 1), 8u);
-    EXPECT_EQ(choose_spacing(grid, 2, 1), 4u);
-    EXPECT_EQ(choose_spacing(grid, 4, 1), 2u);
-    EXPECT_EQ(choose_spacing(grid, 1e4, 1), 1u);
+    EXPECT_EQ(choose_spacing(grid.value, grid.to_scene, 1e-3, 1), 8u);
+    EXPECT_EQ(choose_spacing(grid.value, grid.to_scene, 2, 1), 4u);
+    EXPECT_EQ(choose_spacing(grid.value, grid.to_scene, 4, 1), 2u);
+    EXPECT_EQ(choose_spacing(grid.value, grid.to_scene, 1e4, 1), 1u);
 }
 
 }  // namespace

@@ -1,0 +1,115 @@
+#include "bake/volumes/volume_parts.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
+#include "bake/volumes/node_lattice.h"
+#include "bake/volumes/volume_knobs.h"
+
+namespace opaline::bake {
+namespace {
+
+using Grid = formats::SparseGrid<float>;
+
+// The bricks of a grid that `is_kept` names.
+template <class Kept>
+Grid keep_bricks(const Grid& grid, Kept&& is_kept) {
+    Grid part{grid.first_brick, grid.extent, grid.table, {}, grid.to_scene};
+    for (std::uint32_t& number : part.table) {
+        if (number == Grid::kEmpty) {
+            continue;
+        }
+        if (!is_kept(number)) {
+            number = Grid::kEmpty;
+            continue;
+        }
+        const std::span<const float> values = grid.brick(number);
+        number = static_cast<std::uint32_t>(part.brick_count());
+        part.value.insert(part.value.end(), values.begin(), values.end());
+    }
+    return part;
+}
+
+struct Part {
+    Grid density;
+    std::uint32_t spacing = 1;
+};
+
+// Of a volume that is better whole, none.
+std::vector<Part> part_grid(const Grid& grid, double sigma_t, double depth) {
+    std::vector<std::uint32_t> spacing(grid.brick_count(), 0);  // 0: nothing in it
+    for (std::uint32_t b = 0; b < spacing.size(); ++b) {
+        const std::span<const float> values = grid.brick(b);
+        if (std::ranges::any_of(values, [](float v) { return v > 0; })) {
+            spacing[b] = choose_spacing(values, grid.to_scene, sigma_t, depth);
+        }
+    }
+    std::vector<Part> parts;
+    std::size_t nodes = 0;
+    for (const std::uint32_t s : {1U, 2U, 4U, 8U}) {
+        if (std::ranges::count(spacing, s) > 0) {
+            parts.push_back(
+                {keep_bricks(grid, [&](std::uint32_t b) { return spacing[b] == s; }), s});
+            nodes += make_node_lattice(parts.back().density, s).node.size();
+        }
+    }
+    constexpr double kLeastSaved = 0.25;
+    const auto worth = [&](std::size_t whole) {
+        return static_cast<double>(nodes) <= (1 - kLeastSaved) * static_cast<double>(whole);
+    };
+    if (parts.size() < 2 || !worth(make_node_lattice(grid, parts.front().spacing).node.size())) {
+        parts.clear();
+    }
+    return parts;
+}
+
+}  // namespace
+
+VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayout> layouts,
+                         const Knobs& knobs) {
+    VolumeParts found;
+    formats::Scene parted;
+    parted.origin = scene.origin;
+    // Walks collide in volumes that are not baked, too.
+    for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
+        const formats::Volume& volume = scene.volumes[v];
+        const auto layout = std::ranges::find(layouts, v, &VolumeLayout::volume);
+        const bool is_baked = layout != layouts.end();
+        std::vector<Part> parts;
+        if (is_baked && layout->has_nodes() && !(knobs[kVolumeSpacing] > 0) &&
+            volume.emission.empty() && volume.scattering.empty()) {
+            const formats::Rgb s = volume.sigma_t;
+            parts = part_grid(volume.density, static_cast<double>(std::max({s.r, s.g, s.b})),
+                              spacing_depth(knobs));
+        }
+        const std::size_t count = std::max<std::size_t>(1, parts.size());
+        for (std::size_t i = 0; i < count; ++i) {
+            if (is_baked) {
+                found.layouts.push_back(*layout);
+                found.layouts.back().volume = static_cast<std::uint32_t>(parted.volumes.size());
+            }
+            if (parts.empty()) {
+                parted.volumes.push_back(volume);
+                continue;
+            }
+            formats::Volume part;
+            part.name = volume.name;
+            part.density = std::move(parts[i].density);
+            part.sigma_t = volume.sigma_t;
+            part.albedo = volume.albedo;
+            part.phase = volume.phase;
+            part.emitter = volume.emitter;
+            part.paper = volume.paper;
+            parted.volumes.push_back(std::move(part));
+            found.layouts.back().spacing = parts[i].spacing;
+        }
+    }
+    if (parted.volumes.size() > scene.volumes.size()) {
+        found.scene = std::move(parted);
+    }
+    return found;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bake/plan/knobs.h"
+#include "bake/volumes/plan_volumes.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Volumes as they are baked: where a volume is dense in places and thin in others, as several
+/// volumes, each with nodes at a distance of its own. Densities are linear between voxels, so those
+/// of the parts add up to the whole's everywhere, and light changes from the nodes of one to those
+/// of the other as their densities do, without a seam (README.md, "Parts").
+struct VolumeParts {
+    std::optional<formats::Scene> scene;  ///< the parts, nothing else; nothing: as given
+    std::vector<VolumeLayout> layouts;    ///< VolumeLayout::volume counts among these
+
+    const formats::Scene& scene_or(const formats::Scene& given) const {
+        return scene ? *scene : given;
+    }
+};
+
+/// Bricks of a part have the same distance of nodes, by choose_spacing. A volume stays whole where
+/// parts would save less than a quarter of the nodes that it has with the closest of these
+/// distances, where it glows, where its albedo varies, and where the distance is given.
+VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayout> layouts,
+                         const Knobs& knobs);
+
+}  // namespace opaline::bake
