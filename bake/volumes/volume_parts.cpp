@@ -37,8 +37,12 @@ struct Part {
     std::uint32_t spacing = 1;
 };
 
-// Of a volume that is better whole, none.
-std::vector<Part> part_grid(const Grid& grid, double sigma_t, double depth) {
+std::size_t count_nodes(const Grid& grid, std::uint32_t spacing) {
+    return make_node_lattice(grid, spacing).node.size();
+}
+
+// Of a volume that is better whole, none. `own`: the distance that it has then.
+std::vector<Part> part_grid(const Grid& grid, std::uint32_t own, double sigma_t, double depth) {
     std::vector<std::uint32_t> spacing(grid.brick_count(), 0);  // 0: nothing in it
     for (std::uint32_t b = 0; b < spacing.size(); ++b) {
         const std::span<const float> values = grid.brick(b);
@@ -52,14 +56,15 @@ std::vector<Part> part_grid(const Grid& grid, double sigma_t, double depth) {
         if (std::ranges::count(spacing, s) > 0) {
             parts.push_back(
                 {keep_bricks(grid, [&](std::uint32_t b) { return spacing[b] == s; }), s});
-            nodes += make_node_lattice(parts.back().density, s).node.size();
+            nodes += count_nodes(parts.back().density, s);
         }
     }
-    constexpr double kLeastSaved = 0.25;
-    const auto worth = [&](std::size_t whole) {
-        return static_cast<double>(nodes) <= (1 - kLeastSaved) * static_cast<double>(whole);
+    constexpr double kMostOfClosest = 0.75, kMostOfOwn = 1.5;
+    const auto is_within = [&](double share, std::uint32_t whole) {
+        return static_cast<double>(nodes) <= share * static_cast<double>(count_nodes(grid, whole));
     };
-    if (parts.size() < 2 || !worth(make_node_lattice(grid, parts.front().spacing).node.size())) {
+    if (parts.size() < 2 || !is_within(kMostOfClosest, parts.front().spacing) ||
+        !is_within(kMostOfOwn, own)) {
         parts.clear();
     }
     return parts;
@@ -81,8 +86,8 @@ VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayo
         if (is_baked && layout->has_nodes() && !(knobs[kVolumeSpacing] > 0) &&
             volume.emission.empty() && volume.scattering.empty()) {
             const formats::Rgb s = volume.sigma_t;
-            parts = part_grid(volume.density, static_cast<double>(std::max({s.r, s.g, s.b})),
-                              spacing_depth(knobs));
+            parts = part_grid(volume.density, layout->spacing,
+                              static_cast<double>(std::max({s.r, s.g, s.b})), spacing_depth(knobs));
         }
         const std::size_t count = std::max<std::size_t>(1, parts.size());
         for (std::size_t i = 0; i < count; ++i) {
