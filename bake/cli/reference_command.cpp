@@ -104,21 +104,28 @@ Status try_to_create(const std::string& path) {
     return file ? formats::ok_status() : Status(file.error());
 }
 
-void print_summary(const ReferenceCommand& options, const bake::Estimate& estimate) {
+// A sun behind a smooth boundary is met by few paths or none, which says nothing of the error.
+std::string describe_noise(const bake::Estimate& estimate) {
     double error = 0, sum = 0;
     for (const bake::Moments& m : estimate.pixel) {
         const glm::dvec3 variance = m.variance_of_mean();
         error += variance.x + variance.y + variance.z;
         sum += glm::dot(m.mean, m.mean);
     }
+    return !(sum > 0) ? "no path met any light"
+           : estimate.samples < 2
+               ? "one sample does not tell its error"
+               : fmt::format("relative standard error {:.2g} %", 100 * std::sqrt(error / sum));
+}
+
+void print_summary(const ReferenceCommand& options, const bake::Estimate& estimate) {
     const double paths =
         static_cast<double>(estimate.pixel.size()) * static_cast<double>(estimate.samples);
     print_note(fmt::format(
-        "{}: {} samples for each of {} {}, {}, {:.3g} paths/s; relative standard error {:.2g} %",
-        printable(options.output), estimate.samples, estimate.pixel.size(),
-        options.receivers > 0 ? "receivers" : "pixels", format_seconds(estimate.seconds),
-        estimate.seconds > 0 ? paths / estimate.seconds : 0.0,
-        sum > 0 ? 100 * std::sqrt(error / sum) : 0.0));
+        "{}: {} samples for each of {} {}, {}, {:.3g} paths/s; {}", printable(options.output),
+        estimate.samples, estimate.pixel.size(), options.receivers > 0 ? "receivers" : "pixels",
+        format_seconds(estimate.seconds), estimate.seconds > 0 ? paths / estimate.seconds : 0.0,
+        describe_noise(estimate)));
 }
 
 Status report_lost_paths(const ReferenceCommand& options, const bake::Estimate& estimate) {

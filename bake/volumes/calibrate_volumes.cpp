@@ -64,8 +64,10 @@ void calibrate_volumes(const CalibrationBench& bench, Rates& rates) {
     Knobs knobs;
     knobs.cubemap_size = 16;
     // One thing more at a time: rows, walks, and directions whose light joins them.
-    const VolumeLayout once{0, 1, 0, 8, 0}, often{0, 1, 1, 8, 1}, rows{0, 25, 25, 8, 1};
-    const VolumeLayout walks{0, 1, 1, 8, 8};
+    const VolumeLayout once{.once_terms = 1, .spacing = 8};
+    const VolumeLayout often{.once_terms = 1, .often_terms = 1, .spacing = 8, .walks = 1};
+    const VolumeLayout rows{.once_terms = 25, .often_terms = 25, .spacing = 8, .walks = 1};
+    const VolumeLayout walks{.once_terms = 1, .often_terms = 1, .spacing = 8, .walks = 8};
     Knobs fine = knobs;
     fine.quality = Quality::reference;
     const double alone = measure_bake(scene, *sky, once, knobs);

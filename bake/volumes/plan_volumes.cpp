@@ -244,8 +244,8 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         const ScaledPhase phase = scale_phase(volume.phase);
         PlanEntry once = decide("volume-single", subject, most.once, knobs);
         PlanEntry often = decide("volume-multiple", subject, most.once * most.once, knobs);
-        VolumeLayout layout{
-            .volume = v, .whole = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
+        VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
+        layout.whole = v;
         if (once.on) {
             layout.once_terms = once.terms = phase.harmonics();
             once.reason =

@@ -17,7 +17,6 @@ namespace opaline::bake {
 /// What is baked of one volume.
 struct VolumeLayout {
     std::uint32_t volume = 0;       ///< index into Scene::volumes
-    std::uint32_t whole = 0;        ///< the same before they were parted (volume_parts.h)
     std::uint32_t once_terms = 0;   ///< K_s; 0: no light that was scattered once
     std::uint32_t often_terms = 0;  ///< K_m; 0: none that was scattered more often
     std::uint32_t spacing = 1;      ///< voxels between nodes
@@ -32,6 +31,7 @@ struct VolumeLayout {
     bool sees_sky = true;          ///< rows of multiple scattering hold light of the sky
     bool sees_surfaces = false;    ///< and what surfaces send to the volume
     bool coloured = false;         ///< rows have three bands though all volumes are grey
+    std::uint32_t whole = 0;       ///< `volume` before volumes were parted (volume_parts.h)
 
     bool has_nodes() const { return once_terms > 0 || often_terms > 0 || glow_terms > 0; }
 };

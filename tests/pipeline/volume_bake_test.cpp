@@ -118,10 +118,10 @@ TEST(VolumeBake, AMeshedBallIsLitAsTheSameBallOfAGridIs) {
 TEST(VolumeBake, PartsLookLikeTheWholeAlsoWhereTheyMeet) {
     Scene scene;
     scene.materials.resize(1);
-    scene.volumes.push_back(make_volume(sample_grid(glm::dvec3(1.7), 0.1,
+    scene.volumes.push_back(make_volume(sample_grid(glm::dvec3(2.1), 0.1,
                                                     [](glm::dvec3 p) {
                                                         const double r = glm::length(p);
-                                                        return r > 1.6 ? 0.0 : r < 0.3 ? 1.0 : 0.02;
+                                                        return r > 1.6 ? 0.0 : r < 0.7 ? 1.0 : 0.01;
                                                     }),
                                         4, 0.9f, 0));
     const bake::BakeResult parted = bake_scene(scene, small_bake());
