@@ -70,49 +70,64 @@ std::vector<Part> part_grid(const Grid& grid, std::uint32_t own, double sigma_t,
     return parts;
 }
 
+const VolumeLayout* find_layout(std::span<const VolumeLayout> layouts, std::uint32_t volume) {
+    const auto found = std::ranges::find(layouts, volume, &VolumeLayout::volume);
+    return found == layouts.end() ? nullptr : &*found;
+}
+
+std::vector<Part> part_volume(const formats::Volume& volume, const VolumeLayout* layout,
+                              const Knobs& knobs) {
+    if (layout == nullptr || !layout->has_nodes() || knobs[kVolumeSpacing] > 0 ||
+        !volume.emission.empty() || !volume.scattering.empty()) {
+        return {};
+    }
+    const formats::Rgb s = volume.sigma_t;
+    return part_grid(volume.density, layout->spacing,
+                     static_cast<double>(std::max({s.r, s.g, s.b})), spacing_depth(knobs));
+}
+
+formats::Volume make_part(const formats::Volume& whole, Grid&& density) {
+    formats::Volume part;
+    part.name = whole.name;
+    part.density = std::move(density);
+    part.sigma_t = whole.sigma_t;
+    part.albedo = whole.albedo;
+    part.phase = whole.phase;
+    return part;
+}
+
 }  // namespace
 
 VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayout> layouts,
                          const Knobs& knobs) {
+    std::vector<std::vector<Part>> parts;
+    for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
+        parts.push_back(part_volume(scene.volumes[v], find_layout(layouts, v), knobs));
+    }
+    if (std::ranges::all_of(parts, &std::vector<Part>::empty)) {
+        return {std::nullopt, {layouts.begin(), layouts.end()}};
+    }
     VolumeParts found;
-    formats::Scene parted;
+    formats::Scene& parted = found.scene.emplace();
     parted.origin = scene.origin;
+    const auto add = [&](formats::Volume&& volume, const VolumeLayout* layout,
+                         std::uint32_t spacing) {
+        if (layout != nullptr) {
+            found.layouts.push_back(*layout);
+            found.layouts.back().volume = static_cast<std::uint32_t>(parted.volumes.size());
+            found.layouts.back().spacing = spacing;
+        }
+        parted.volumes.push_back(std::move(volume));
+    };
     // Walks collide in volumes that are not baked, too.
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
-        const formats::Volume& volume = scene.volumes[v];
-        const auto layout = std::ranges::find(layouts, v, &VolumeLayout::volume);
-        const bool is_baked = layout != layouts.end();
-        std::vector<Part> parts;
-        if (is_baked && layout->has_nodes() && !(knobs[kVolumeSpacing] > 0) &&
-            volume.emission.empty() && volume.scattering.empty()) {
-            const formats::Rgb s = volume.sigma_t;
-            parts = part_grid(volume.density, layout->spacing,
-                              static_cast<double>(std::max({s.r, s.g, s.b})), spacing_depth(knobs));
+        const VolumeLayout* const layout = find_layout(layouts, v);
+        if (parts[v].empty()) {
+            add(formats::Volume(scene.volumes[v]), layout, layout != nullptr ? layout->spacing : 1);
         }
-        const std::size_t count = std::max<std::size_t>(1, parts.size());
-        for (std::size_t i = 0; i < count; ++i) {
-            if (is_baked) {
-                found.layouts.push_back(*layout);
-                found.layouts.back().volume = static_cast<std::uint32_t>(parted.volumes.size());
-            }
-            if (parts.empty()) {
-                parted.volumes.push_back(volume);
-                continue;
-            }
-            formats::Volume part;
-            part.name = volume.name;
-            part.density = std::move(parts[i].density);
-            part.sigma_t = volume.sigma_t;
-            part.albedo = volume.albedo;
-            part.phase = volume.phase;
-            part.emitter = volume.emitter;
-            part.paper = volume.paper;
-            parted.volumes.push_back(std::move(part));
-            found.layouts.back().spacing = parts[i].spacing;
+        for (Part& part : parts[v]) {
+            add(make_part(scene.volumes[v], std::move(part.density)), layout, part.spacing);
         }
-    }
-    if (parted.volumes.size() > scene.volumes.size()) {
-        found.scene = std::move(parted);
     }
     return found;
 }
