@@ -63,8 +63,8 @@ std::vector<Part> part_grid(const Grid& grid, std::uint32_t own, double sigma_t,
     const auto is_within = [&](double share, std::uint32_t whole) {
         return static_cast<double>(nodes) <= share * static_cast<double>(count_nodes(grid, whole));
     };
-    if (parts.size() < 2 || !is_within(kMostOfClosest, parts.front().spacing) ||
-        !is_within(kMostOfOwn, own)) {
+    if (parts.size() < 2 || !is_within(kMostOfOwn, own) ||
+        !is_within(kMostOfClosest, parts.front().spacing)) {
         parts.clear();
     }
     return parts;
