@@ -1,7 +1,6 @@
 #include "bake/volumes/volume_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <utility>
 
@@ -100,9 +99,17 @@ formats::Volume make_part(const formats::Volume& whole, Grid&& density) {
 
 VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayout> layouts,
                          const Knobs& knobs) {
+    constexpr std::size_t kMostDrawn = 4;  // by OpenGL (runtime/gl) and by pages
+    std::size_t count = layouts.size();
     std::vector<std::vector<Part>> parts;
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
-        parts.push_back(part_volume(scene.volumes[v], find_layout(layouts, v), knobs));
+        parts.push_back(count < kMostDrawn
+                            ? part_volume(scene.volumes[v], find_layout(layouts, v), knobs)
+                            : std::vector<Part>());
+        if (!parts.back().empty() && count + parts.back().size() - 1 > kMostDrawn) {
+            parts.back().clear();
+        }
+        count += parts.back().empty() ? 0 : parts.back().size() - 1;
     }
     if (std::ranges::all_of(parts, &std::vector<Part>::empty)) {
         return {std::nullopt, {layouts.begin(), layouts.end()}};

@@ -26,7 +26,8 @@ struct VolumeParts {
 /// Bricks of a part have the same distance of nodes, by choose_spacing. A volume stays whole where
 /// parts would save less than a quarter of the nodes that it has with the closest of these
 /// distances, or have more than half as many again as with its own; where it glows, where its
-/// albedo varies, and where the distance is given.
+/// albedo varies, where the distance is given, and where there would be more than the four volumes
+/// that OpenGL draws.
 VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayout> layouts,
                          const Knobs& knobs);
 

@@ -108,5 +108,15 @@ TEST(VolumeParts, OtherVolumesKeepTheirLayouts) {
               scene.volumes[2].density.value);
 }
 
+TEST(VolumeParts, AreNoMoreThanOpenGlDraws) {
+    formats::Scene scene = tests::scene_of(make_smoke());
+    for (const std::size_t most : {2u, 4u, 4u, 4u, 5u}) {
+        const VolumeParts parts = part(scene);
+        EXPECT_EQ(parts.layouts.size(), most) << scene.volumes.size();
+        EXPECT_EQ(parts.scene_or(scene).volumes.size(), most);
+        scene.volumes.push_back(make_smoke());
+    }
+}
+
 }  // namespace
 }  // namespace opaline::bake
