@@ -89,9 +89,10 @@ struct Medium {
 /// both diffusely. With the base colour the two shares of a band add up to 1 at most.
 struct Sheet {
     Rgb reflect{1, 1, 1}, transmit{0, 0, 0};  ///< each in [0, 1]
-    /// The material's base colour and sides without it, for what replaces it.
+    /// The material's base colour, sides and metallic factor without it, for what replaces it.
     Rgb opaque_color{1, 1, 1};
     bool opaque_double_sided = false;
+    float opaque_metallic = 0;
 };
 
 /// What an opaque surface adds to its diffuse reflection: the metallic-roughness model of glTF 2.0

@@ -238,6 +238,9 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         if (!material.medium) {
             material.gloss = map_gloss(source.translucency, remarks);
         }
+        if (material.sheet) {
+            material.sheet->opaque_metallic = material.gloss.metallic;
+        }
         if (used[i]) {
             add_textures(source, where, loader, material, remarks);
             if (material.medium) {

@@ -100,12 +100,15 @@ void fill(const MaterialMedium& entry, Material& material, Scene& scene, KnownIm
     if (material.sheet) {
         material.base_color = material.sheet->opaque_color;
         material.double_sided = material.sheet->opaque_double_sided;
+        material.gloss.metallic = material.sheet->opaque_metallic;
     }
     material.medium = entry.medium;
     material.sheet = entry.sheet;
     if (material.sheet) {
         material.sheet->opaque_color = material.base_color;
         material.sheet->opaque_double_sided = material.double_sided;
+        // glTF's default is a metal, whose diffuse parts are nothing.
+        material.sheet->opaque_metallic = std::exchange(material.gloss.metallic, 0.f);
     }
     material.double_sided = material.double_sided || entry.sheet;  // it has two sides
     // Medium and sheet have their own colour; the factor was for the surface they replace.

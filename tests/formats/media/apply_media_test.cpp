@@ -76,6 +76,18 @@ TEST(ApplyMedia, WhatReplacesAThinWalledSurfaceFindsTheMaterialAsItWas) {
     EXPECT_TRUE(scene.materials[0].double_sided);
 }
 
+// glTF's default is a metal, which would have no diffuse light for the sheet to share out.
+TEST(ApplyMedia, AThinWalledEntryIsNoMetalAndAnOpaqueOneIsAgain) {
+    Scene scene = scene_of({"Paper"});
+    scene.materials[0].gloss.metallic = 1;
+    (void)apply(media_of(R"("Paper": {"thin_walled": {"transmit": [1, 1, 1]}})"), scene);
+    EXPECT_EQ(scene.materials[0].gloss.metallic, 0);
+    (void)apply(media_of(R"("Paper": {"thin_walled": {"reflect": [1, 1, 1]}})"), scene);
+    EXPECT_EQ(scene.materials[0].gloss.metallic, 0);
+    (void)apply(media_of(R"("Paper": {"opaque": true})"), scene);
+    EXPECT_EQ(scene.materials[0].gloss.metallic, 1);
+}
+
 TEST(ApplyMedia, ReplacesWhatTheSceneSaysAndOpaqueRemovesIt) {
     Scene scene = scene_of({"Body", "Glass"});
     scene.materials[0].medium = scene.materials[1].medium = Medium{};
