@@ -51,8 +51,9 @@ struct Subject {
     std::function<double(double)> p;
     bake::PhaseSeries series;
     Json json;
-    /// Rows of its own, ascending from -1 to 1; empty: equal angles.
-    std::vector<double> cosines = {};
+    /// Rows of its own, ascending from -1 to 1, in print and in --table-output; empty: equal
+    /// angles, and rows that are chosen.
+    std::vector<double> cosines = {}, table_cosines = {};
     Json error = nullptr;  ///< numerical
 };
 
@@ -127,6 +128,7 @@ formats::Result<Subject> make_droplet_subject(const DropletOptions& options) {
     for (auto angle = angles.rbegin(); angle != angles.rend(); ++angle) {
         subject.cosines.push_back(std::cos(*angle));
     }
+    subject.table_cosines = subject.cosines;
     subject.p = [phase = droplets.phase](double cosine) {
         return bake::eval_table(phase, std::acos(std::clamp(cosine, -1.0, 1.0)));
     };
@@ -164,10 +166,11 @@ formats::Result<Subject> make_subject(const PhaseCommand& options) {
         phase.type = PhaseFunction::Type::isotropic;
         json = {{"type", "isotropic"}};
     }
-    bake::PhaseSeries series = bake::expand_phase(phase, kDegrees);
     const bake::PhaseDensity density = bake::make_phase_density(phase);
-    return Subject{[density](double cosine) { return bake::eval_phase(density, cosine); },
-                   std::move(series), std::move(json)};
+    Subject subject{[density](double cosine) { return bake::eval_phase(density, cosine); },
+                    bake::expand_phase(phase, kDegrees), std::move(json)};
+    subject.table_cosines.assign(phase.cosine.begin(), phase.cosine.end());
+    return subject;
 }
 
 /// Everything that is printed, in order.
@@ -219,17 +222,48 @@ void print_csv(const Json& all) {
     print("singular_value", nullptr, all["singular_values"]);
 }
 
-/// A table as media files name them (formats/media/README.md). Their reader keeps single precision,
-/// in which neighbouring cosines near 1 may be equal: the last of them stays.
-formats::Status write_phase_table(const std::string& path, const Json& function) {
+/// Ascending, from -1 to 1, each in single precision and once: the reader of tables keeps no more.
+std::vector<double> round_cosines(std::vector<double> cosines) {
+    for (double& cosine : cosines) {
+        cosine = static_cast<double>(static_cast<float>(cosine));
+    }
+    cosines.erase(std::unique(cosines.begin(), cosines.end()), cosines.end());
+    return cosines;
+}
+
+/// Rows that crowd where the function bends. They are chosen among angles in steps of 0.2 % from
+/// both ends on, where peaks are.
+std::vector<double> choose_cosines(const std::function<double(double)>& p) {
+    constexpr double kFirst = 1e-4, kStep = 1.002;  // smaller angles have the rounded cosine 1
+    std::vector<double> cosines{-1};
+    for (double angle = kFirst; angle < std::numbers::pi / 2; angle *= kStep) {
+        cosines.push_back(-std::cos(angle));
+    }
+    for (std::size_t i = cosines.size(); i-- > 0;) {
+        cosines.push_back(-cosines[i]);
+    }
+    // Below, values would take hundreds of rows and make no difference.
+    constexpr double kLeast = 1e-9;
+    bake::AngularTable table;
+    for (const double cosine : round_cosines(std::move(cosines))) {
+        const double value = p(cosine);
+        table.angle.push_back(std::acos(-cosine));  // ascending
+        table.value.push_back(value < kLeast ? 0 : value);
+    }
+    std::vector<double> chosen;
+    for (const double angle : bake::thin_table(table, kRowTolerance).angle) {
+        chosen.push_back(-std::cos(angle));
+    }
+    return round_cosines(std::move(chosen));
+}
+
+/// A table as media files name them (formats/media/README.md).
+formats::Status write_phase_table(const std::string& path, const Subject& subject) {
     std::string text = "cosine value\n";
-    const Json &cosine = function["cosine"], &value = function["value"];
-    const auto rounded = [&](std::size_t i) { return static_cast<float>(cosine[i].get<double>()); };
-    for (std::size_t i = 0; i < cosine.size(); ++i) {
-        const bool is_last = i + 1 == cosine.size();
-        if (is_last || rounded(i) < rounded(i + 1)) {
-            text += cosine[i].dump() + ' ' + value[i].dump() + '\n';
-        }
+    for (const double cosine : subject.table_cosines.empty()
+                                   ? choose_cosines(subject.p)
+                                   : round_cosines(subject.table_cosines)) {
+        text += fmt::format("{} {}\n", cosine, subject.p(cosine));
     }
     return formats::write_file_atomically(path, text);
 }
@@ -265,7 +299,7 @@ int run(const PhaseCommand& options) {
     }
     const Json all = describe(*subject, maps, options.samples);
     if (!options.table_output.empty()) {
-        if (const auto status = write_phase_table(options.table_output, all["function"]); !status) {
+        if (const auto status = write_phase_table(options.table_output, *subject); !status) {
             return report_error(status.error());
         }
     }
@@ -317,7 +351,8 @@ void add_phase_command(CLI::App& app, Job& job) {
             ->option_text("N [181]");
     command
         ->add_option("--table-output", options->table_output,
-                     "also write the function as a table that a media file can name")
+                     "also write the function as a table that a media file can name, with rows "
+                     "where it bends")
         ->check(file_name())
         ->option_text("FILE");
     add_format_options(*command, options->format, "csv: lines of quantity,at,value");

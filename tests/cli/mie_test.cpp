@@ -24,11 +24,6 @@ using std::numbers::pi;
 /// Droplets whose mean takes a tenth of a second.
 const Arguments kSmallDroplets = {"--effective-radius", "0.5", "--size-step", "0.2"};
 
-Arguments join(Arguments a, const Arguments& b) {
-    a.insert(a.end(), b.begin(), b.end());
-    return a;
-}
-
 TEST(Mie, PrintsTheEfficienciesOfTheReferenceTable) {
     OPALINE_CLOUD_ROWS(rows, "mie");
     std::map<std::string, Json> printed;

@@ -14,6 +14,11 @@
 
 namespace opaline::tests {
 
+Arguments join(Arguments a, const Arguments& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
 Outcome run_any(const Arguments& command, const std::function<void(int)>& when_started) {
     const TemporaryFolder folder;
     const std::string out = folder / "out", err = folder / "err";
@@ -73,6 +78,11 @@ std::vector<std::string> list_folder(const std::filesystem::path& folder) {
 std::string read_text(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::size_t count_lines(const std::filesystem::path& path) {
+    const std::string text = read_text(path);
+    return static_cast<std::size_t>(std::ranges::count(text, '\n'));
 }
 
 }  // namespace opaline::tests

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -14,6 +15,7 @@ struct Outcome {
 };
 
 using Arguments = std::vector<std::string>;
+Arguments join(Arguments a, const Arguments& b);
 
 /// Runs a program of the PATH and waits for it. `when_started` gets its process id; what it prints
 /// is kept in files, so that it never waits for a reader.
@@ -26,5 +28,6 @@ Outcome run_opaline(Arguments arguments, const std::function<void(int)>& when_st
 std::vector<std::string> list_folder(const std::filesystem::path& folder);
 
 std::string read_text(const std::filesystem::path& path);
+std::size_t count_lines(const std::filesystem::path& path);
 
 }  // namespace opaline::tests

@@ -27,11 +27,6 @@ std::string write_asset(const SmallScene& small, const formats::Asset& asset) {
     return path;
 }
 
-std::size_t count_lines(const std::string& path) {
-    const std::string text = read_text(path);
-    return static_cast<std::size_t>(std::ranges::count(text, '\n'));
-}
-
 TEST(VolumeFiles, RelightWritesATableOfReceiversAndOneOfNodes) {
     SmallScene small;
     const formats::Asset asset = make_volume_asset();
