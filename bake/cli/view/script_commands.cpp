@@ -116,10 +116,7 @@ std::optional<What> parse_emitter(Words words) {
     const auto band = [&](std::size_t b) {
         return static_cast<float>((*values)[parts.size() == 1 ? 0 : b]);
     };
-    return change([name = words[0].substr(0, equals),
-                   color = formats::Rgb{band(0), band(1), band(2)}](ViewState& state) {
-        set_emitter(state, name, color);
-    });
+    return What{EmitterChange{words[0].substr(0, equals), {band(0), band(1), band(2)}}};
 }
 
 std::optional<What> parse_time(Words words) {

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,15 +19,20 @@ class ScriptRun {
         bool is_settled = false;         ///< the state is drawn in full quality
         std::size_t settled_frames = 0;  ///< shown since then
         bool is_reloaded = false;        ///< a file that changed on disk was read again
+        std::span<const std::string> emitters = {}, other_emitters = {};  ///< names, of both files
     };
 
-    explicit ScriptRun(std::vector<ScriptStep> steps) : steps_(std::move(steps)) {}
+    explicit ScriptRun(std::vector<ScriptStep> steps)
+        : steps_(std::move(steps)), is_done_(steps_.empty()) {}
 
-    /// Carries steps out until one waits, takes a picture or ends the session.
+    /// Carries steps out until one waits, takes a picture, fails or ends the session.
     void advance(ViewState& state, Shown shown);
 
-    bool is_done() const { return next_ == steps_.size(); }
+    /// The last step is carried out and shown: until then what fails is the script's fault.
+    bool is_done() const { return is_done_; }
     bool quits() const { return quits_; }
+    /// A step that cannot be carried out.
+    const std::optional<formats::Error>& error() const { return error_; }
     std::size_t line() const { return line_; }  ///< carried out last; 0: the window is the user's
     /// The picture to take before the next step; none from then on.
     std::optional<Screenshot> take_shot() { return std::exchange(shot_, std::nullopt); }
@@ -36,7 +43,8 @@ class ScriptRun {
     std::vector<ScriptStep> steps_;
     std::size_t next_ = 0, waited_ = 0, line_ = 0;
     std::optional<Screenshot> shot_;
-    bool quits_ = false;
+    std::optional<formats::Error> error_;
+    bool quits_ = false, is_done_;
 };
 
 }  // namespace opaline::cli

@@ -14,6 +14,11 @@ namespace opaline::cli {
 
 /// Changes what is shown. The state has a viewpoint.
 using StateChange = std::function<void(ViewState&)>;
+/// Multiplies the light of an emitter that one of the files has.
+struct EmitterChange {
+    std::string name;
+    formats::Rgb color{1, 1, 1};
+};
 /// Shows the window's picture this often before the next step.
 struct WaitFrames {
     std::size_t frames = 1;
@@ -29,7 +34,7 @@ struct Quit {};
 
 struct ScriptStep {
     std::size_t line = 0;  ///< from 1
-    std::variant<StateChange, WaitFrames, WaitReload, Screenshot, Quit> what;
+    std::variant<StateChange, EmitterChange, WaitFrames, WaitReload, Screenshot, Quit> what;
 };
 
 /// One command a line, words separated by blanks, "in quotes" where they have some; empty lines and

@@ -60,6 +60,7 @@ class Session {
     // The end of the session, or nothing yet.
     std::optional<int> take_drawn(bool has_script);
     void take_input();
+    void advance_script();
     void send_request();
     bool is_sent() const;
     bool wants_exact() const;
@@ -219,6 +220,15 @@ void Session::paint_frame() {
          state_.split, state_.difference_gain});
 }
 
+void Session::advance_script() {
+    ScriptRun::Shown shown{is_settled(), settled_frames_, reloads_ > 0};
+    if (drawn_) {
+        shown.emitters = drawn_->file.facts.emitters;
+        shown.other_emitters = drawn_->other.facts.emitters;
+    }
+    script_.advance(state_, shown);
+}
+
 int Session::run(const std::string& script_name) {
     script_name_ = script_name;
     const std::atomic<bool>& interrupted = catch_interrupts();
@@ -232,7 +242,8 @@ int Session::run(const std::string& script_name) {
         take_input();
         if (const auto code = take_drawn(!script_.is_done())) return *code;
         if (!shot_) {
-            script_.advance(state_, {is_settled(), settled_frames_, reloads_ > 0});
+            advance_script();
+            if (script_.error()) return end_with(*script_.error());
             shot_ = script_.take_shot();
         }
         if (script_.quits()) return kExitSuccess;

@@ -35,8 +35,7 @@ TEST(ScriptRun, AScreenshotWaitsForWhatTheChangesBeforeItAskFor) {
     EXPECT_FALSE(run.quits());
     run.advance(state, {});
     EXPECT_EQ(state.exposure, 2);
-    EXPECT_TRUE(run.quits() && run.is_done());
-    EXPECT_EQ(run.line(), 0u);
+    EXPECT_TRUE(run.quits());
 }
 
 TEST(ScriptRun, StepsWaitForFramesReloadsAndTheFirstViewpoint) {
@@ -54,8 +53,41 @@ TEST(ScriptRun, StepsWaitForFramesReloadsAndTheFirstViewpoint) {
     EXPECT_EQ(state.exposure, 0);
     run.advance(state, {.is_settled = true, .is_reloaded = true});
     EXPECT_EQ(state.exposure, 3);
-    EXPECT_TRUE(run.is_done());
     EXPECT_FALSE(run.quits());
+}
+
+TEST(ScriptRun, IsDoneOnceItsLastChangeIsShown) {
+    EXPECT_TRUE(run_of("").is_done());
+    ScriptRun run = run_of("load other.opal\n");
+    ViewState state = framed_state();
+    run.advance(state, {.is_settled = true});
+    EXPECT_EQ(state.file, "other.opal");
+    state.viewpoint.emplace();
+    run.advance(state, {});
+    EXPECT_FALSE(run.is_done());  // whether it can be read is not known yet
+    EXPECT_EQ(run.line(), 1u);
+    run.advance(state, {.is_settled = true});
+    EXPECT_TRUE(run.is_done());
+    EXPECT_EQ(run.line(), 0u);
+}
+
+TEST(ScriptRun, AnEmitterThatNoFileHasIsAnError) {
+    const std::vector<std::string> lamps{"Lamp"}, suns{"Sun"};
+    const ScriptRun::Shown shown{.is_settled = true, .emitters = lamps, .other_emitters = suns};
+    ViewState state = framed_state();
+    ScriptRun both = run_of("emitter Lamp=0.5\nemitter Sun=2\n");
+    both.advance(state, {.is_settled = false});  // the files before have others
+    EXPECT_TRUE(state.emitters.empty());
+    both.advance(state, shown);
+    both.advance(state, shown);
+    EXPECT_EQ(emitter_color(state, "Lamp").r, 0.5f);
+    EXPECT_EQ(emitter_color(state, "Sun").r, 2);
+    EXPECT_FALSE(both.error());
+    ScriptRun unknown = run_of("\nemitter Moon=1\n");
+    unknown.advance(state, shown);
+    ASSERT_TRUE(unknown.error());
+    EXPECT_EQ(unknown.line(), 2u);
+    EXPECT_NE(unknown.error()->diagnostics.front().remedy.find("Lamp, Sun"), std::string::npos);
 }
 
 }  // namespace

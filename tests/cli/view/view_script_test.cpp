@@ -18,6 +18,9 @@ ViewState carry_out(const std::string& text) {
     EXPECT_TRUE(steps) << steps.error().diagnostics.front().fault;
     for (const ScriptStep& step : *steps) {
         if (const auto* change = std::get_if<StateChange>(&step.what)) (*change)(state);
+        if (const auto* emitter = std::get_if<EmitterChange>(&step.what)) {
+            set_emitter(state, emitter->name, emitter->color);
+        }
     }
     return state;
 }
