@@ -64,17 +64,17 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
     command
         .add_option("--azimuth", options.azimuth,
                     "from the target to the camera, from +Z toward +X [degrees]")
-        ->check(CLI::Range(-1e6, 1e6))
+        ->check(real_number(-1e6, 1e6))
         ->excludes(eye)
         ->option_text("DEG");
     command
         .add_option("--elevation", options.elevation,
                     "from the target to the camera, above the horizon [degrees]")
-        ->check(CLI::Range(-90.0, 90.0))
+        ->check(real_number(-90, 90))
         ->excludes(eye)
         ->option_text("DEG");
     command.add_option("--distance", options.distance, "from the target to the camera [m]")
-        ->check(CLI::PositiveNumber)
+        ->check(number_above(0, 1e12))
         ->excludes(eye)
         ->option_text("M");
     command.add_option("--target", options.target, "point looked at [m]; default: the middle")

@@ -18,6 +18,7 @@ void add_look_options(CLI::App& command, const LookOptions& options) {
                         "; the background is black, without a cloud layer, unless all are. " +
                         formats::term_names(formats::TermSet::separable, " and ") +
                         " apart need a bake with --separate-terms")
+        ->check(term_list())
         ->option_text("all|LIST [all]");
     command.add_option("--exposure", options.exposure, "brighter by a factor of 2^EV")
         ->check(real_number(-64, 64))

@@ -106,6 +106,12 @@ CLI::Validator file_name() {
     });
 }
 
+CLI::Validator term_list() {
+    return make_check([](std::string& text) {
+        return text.empty() ? std::string("it names nothing; give all, or leave it out") : "";
+    });
+}
+
 namespace detail {
 
 CLI::Validator one_of(std::vector<std::pair<std::string, std::string>> names) {

@@ -32,6 +32,9 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 /// The path of a file; not empty.
 CLI::Validator file_name();
 
+/// Components of radiance: not empty, as nothing would stand for all of them.
+CLI::Validator term_list();
+
 namespace detail {
 /// Of a name and the text that CLI11 converts into the option's value.
 CLI::Validator one_of(std::vector<std::pair<std::string, std::string>> names);

@@ -45,6 +45,7 @@ struct ReferenceCommand {
     float exposure = 0;
     unsigned threads = 0;
     ProgressStyle progress = ProgressStyle::automatic;
+    std::vector<const CLI::Option*> picture_options;  ///< that say nothing of receivers
 };
 
 // Beside OUT.exr: OUT.var.exr.
@@ -76,6 +77,13 @@ Status check_paths(const ReferenceCommand& options, std::vector<std::filesystem:
                           table
                               ? "give --receivers N, or end the name in .exr or .png for a picture"
                               : "end the name in .csv, or leave out --receivers");
+    }
+    for (const CLI::Option* option : options.picture_options) {
+        if (table && option->count() > 0) {
+            return make_error(ErrorKind::usage, "", option->get_name(),
+                              "a table of receivers is no picture",
+                              "leave it out; --eye says where receivers are seen from");
+        }
     }
     return formats::ok_status();
 }
@@ -321,6 +329,7 @@ void add_estimate_options(CLI::App& command, ReferenceCommand& options) {
                 "(straight through a body), interreflection (paths that meet a second surface or "
                 "body, or a volume and a surface), emitters (light of the scene's own glowing "
                 "surfaces and lights)")
+        ->check(term_list())
         ->option_text("all|LIST [all]");
     command
         .add_option("--texture-filter", options.texture_filter,
@@ -374,6 +383,10 @@ void add_reference_command(CLI::App& app, Job& job) {
     add_path_integration_options(*command, options->paths);
     add_estimate_options(*command, *options);
     add_camera_options(*command, options->camera);
+    for (const char* name :
+         {"--size", "--azimuth", "--elevation", "--distance", "--target", "--up", "--fov"}) {
+        options->picture_options.push_back(command->get_option(name));
+    }
     command->add_option("--exposure", options->exposure, "brighter by a factor of 2^EV")
         ->check(real_number(-64, 64))
         ->option_text("EV [0]");

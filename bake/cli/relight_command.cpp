@@ -221,6 +221,7 @@ void add_relight_command(CLI::App& app, Job& job) {
                          formats::term_names(formats::TermSet::baked) + ". " +
                          formats::term_names(formats::TermSet::separable, " and ") +
                          " apart need a bake with --separate-terms")
+        ->check(term_list())
         ->option_text("all|LIST [all]");
     command
         ->add_option("--rotate-light", options->rotate_light,

@@ -143,13 +143,13 @@ int run(const SweepCommand& options) {
             return report_error(status.error());
         }
     }
-    print_note(
-        fmt::format("{}: {} bakes in {}{}; open {}", printable(options.folder),
-                    result->points.size(), format_seconds(result->seconds),
-                    result->skipped.empty()
-                        ? ""
-                        : fmt::format(", {} left out (see the page)", result->skipped.size()),
-                    printable((std::filesystem::path(options.folder) / "report.html").string())));
+    print_note(fmt::format(
+        "{}: {} bake{} in {}{}; open {}", printable(options.folder), result->points.size(),
+        result->points.size() == 1 ? "" : "s", format_seconds(result->seconds),
+        result->skipped.empty()
+            ? ""
+            : fmt::format(", {} left out (see the page)", result->skipped.size()),
+        printable((std::filesystem::path(options.folder) / "report.html").string())));
     return kExitSuccess;
 }
 
