@@ -22,8 +22,11 @@ RowLayout layout_material(const EffectTable& effects, const formats::Material& m
     if (knobs.separate_terms || layout.at_entry || !layout.constant) {
         layout.view_harmonics = layout.straight_harmonics = 0;
     }
-    // A row for all views that stands alone is marked as such in the file.
-    layout.separate = layout.translucent && (knobs.separate_terms || layout.all_harmonics() == 0);
+    // A row for all views that stands alone is marked as such in the file, unless it holds what
+    // both of them would.
+    const bool stands_alone = layout.all_harmonics() == 0 ? !(layout.constant && layout.all_orders)
+                                                          : knobs.separate_terms;
+    layout.separate = layout.translucent && stands_alone;
     layout.at_entry = layout.at_entry && layout.translucent && layout.has_rows();
     layout.coloured = layout.coloured && layout.constant;
     layout.grey = layout.grey && !layout.coloured && (layout.translucent || layout.sheet);

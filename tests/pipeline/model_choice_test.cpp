@@ -7,6 +7,7 @@
 
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/inspect_scene.h"
+#include "runtime/terms.h"
 #include "tests/support/effects.h"
 #include "tests/support/sheets.h"
 #include "tests/support/walk_bake.h"
@@ -125,6 +126,25 @@ TEST(ModelChoice, LightScatteredOnceIsLeftToWalksThatStandCloseAndToNoOtherModel
     EXPECT_EQ(effects_on(3, kScaled), apart);
     EXPECT_EQ(effects_on(300, kWalked), apart) << "1500 sites would blur it";
     EXPECT_EQ(effects_on(3, kWalked, true), apart) << "--separate-terms";
+}
+
+// One row for all views was marked as multiple scattering alone: `--terms single` showed nothing.
+TEST(ModelChoice, ARowThatHoldsLightOfAllOrdersShowsNeitherOfThemAlone) {
+    const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(1)},
+                                                            tests::make_grey_medium(2.97f, 0.03f));
+    BakeOptions options = bake_by(kWalked, 2000);
+    options.quality = Quality::draft;
+    const auto shows = [](const BakeResult& bake, TermSet terms) {
+        EXPECT_EQ(bake.asset.primitives[0].terms, 1u);
+        return runtime::check_terms(bake.asset.view(), terms, "").has_value();
+    };
+    options.effects = {"multiple", "single"};
+    const BakeResult both = tests::bake_scene(ball, options);
+    EXPECT_FALSE(shows(both, TermSet::single));
+    EXPECT_FALSE(shows(both, TermSet::multiple));
+    EXPECT_TRUE(shows(both, TermSet::multiple | TermSet::single));
+    options.effects = {"multiple"};
+    EXPECT_TRUE(shows(tests::bake_scene(ball, options), TermSet::multiple));
 }
 
 // The dipole where it leaves enough of the target, another model where it does not; what the models

@@ -15,8 +15,8 @@ struct TraceForOptions {
     bool volumes_see_surfaces = false;  ///< and of what surfaces had sent to these
 };
 
-/// Path tracing that the total error of every bake is measured against: a small one first, which
-/// says how much the time allows. Errors: as trace_model_truth.
+/// Path tracing that the total error of every bake is measured against: few at first, and
+/// more as long as the time allows. Errors: as trace_model_truth.
 formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
                                                    const ModelProbes& probes,
                                                    const TraceForOptions& options,
