@@ -46,7 +46,15 @@ InnerField::InnerField(std::span<const WalkStart> starts, float radius, float pa
         position_.push_back(s.position);
         arrival_.push_back(s.arrival);
         depth_.push_back(s.depth);
+        low_ = glm::min(low_, s.position);
+        high_ = glm::max(high_, s.position);
     }
+}
+
+// In radii, of the lowest corner of the box around all sites.
+float InnerField::depth_below(glm::vec3 position, glm::vec3 normal) const {
+    const glm::vec3 corner = glm::mix(high_, low_, glm::greaterThan(normal, glm::vec3(0)));
+    return glm::dot(position - corner, normal) / radius_;
 }
 
 // Bounded, so that the few places far beyond the sites are not extrapolated to.
@@ -79,7 +87,9 @@ std::vector<InnerField::Neighbour> InnerField::collect(const WalkSpace& space,
     std::vector<std::uint32_t> around;
     std::vector<Neighbour> near;
     std::vector<glm::vec3> places;
-    const int steps = static_cast<int>(std::ceil(stretch - 0.5f));
+    // Flights of thin media go far beyond the body.
+    const float deepest = std::max(0.0f, depth_below(centre.position, point.normal));
+    const int steps = static_cast<int>(std::ceil(std::min(stretch - 0.5f, deepest + 1)));
     for (int step = 0; step <= steps; ++step) {
         const glm::vec3 below = static_cast<float>(step) * radius_ * point.normal;
         grid_.collect_around(grid_.cell_of(centre.position - below), around);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -57,9 +58,11 @@ class InnerField {
     std::vector<Neighbour> nearest(const Centre& centre) const;
     Functions eval(const Centre& centre, glm::vec3 position, glm::vec3 direction) const;
     std::size_t count_functions(std::size_t sites) const;
+    float depth_below(glm::vec3 position, glm::vec3 normal) const;
 
     std::vector<glm::vec3> position_, arrival_;
     std::vector<float> depth_;
+    glm::vec3 low_{std::numeric_limits<float>::max()}, high_{-std::numeric_limits<float>::max()};
     float radius_ = 1, path_ = 1;
     bool is_isotropic_ = true;
     PointGrid grid_;
