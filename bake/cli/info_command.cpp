@@ -173,12 +173,23 @@ bool has_object(const Json& json, const char* key) {
     return json.contains(key) && json[key].is_object();
 }
 
+// Of noise that is subtracted little or nothing may be left: the interval says how much could be.
+void print_interval(const Json& error) {
+    if (!error.contains("ci95") || !error["ci95"].is_array() || error["ci95"].size() != 2 ||
+        !error["ci95"][0].is_number() || !error["ci95"][1].is_number()) {
+        return;
+    }
+    fmt::print(" (95 %: {:.2f} to {:.2f})", 100 * error["ci95"][0].get<double>(),
+               100 * error["ci95"][1].get<double>());
+}
+
 // The self-check's error at vertices.
 void print_error(const Json& error) {
     const bool is_checked = text_of(error, "receivers_checked") != "0";
     fmt::print("measured error ");
     if (is_checked) {
         fmt::print("{:.2f} % RMS", 100 * error["rms_relative"].get<double>());
+        print_interval(error);
     } else {
         fmt::print("none");
     }

@@ -1,9 +1,7 @@
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -16,48 +14,27 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
-#include "bake/mie/angular_table.h"
-#include "bake/scattering/phase.h"
+#include "bake/cli/phase_subject.h"
 #include "bake/scattering/phase_maps.h"
 #include "bake/scattering/phase_series.h"
 #include "formats/media/limits.h"
-#include "formats/media/read_phase_table.h"
-#include "formats/opal/atomic_file.h"
 
 namespace opaline::cli {
 namespace {
 
 using formats::make_error;
-using formats::PhaseFunction;
 using Json = nlohmann::ordered_json;
 
-/// The types of media files, and droplets, which become a table there.
-enum class PhaseType { henyey_greenstein, isotropic, rayleigh, gaussian, tabulated, mie };
-
 struct PhaseCommand {
-    PhaseType type = PhaseType::henyey_greenstein;
-    double g = std::nan(""), rms_angle = std::nan("");
-    std::string table, table_output;
-    DropletOptions droplets;
+    PhaseChoice phase;
+    std::string table_output;
     unsigned samples = 181;
     TextFormat format = TextFormat::json;
     CLI::Option *g_option = nullptr, *rms_angle_option = nullptr, *table_option = nullptr,
                 *samples_option = nullptr;
 };
 
-/// The function itself, its series, and the object that names it in a media file (of droplets:
-/// their parameters).
-struct Subject {
-    std::function<double(double)> p;
-    bake::PhaseSeries series;
-    Json json;
-    /// Rows of its own, ascending from -1 to 1, in print and in --table-output; empty: equal
-    /// angles, and rows that are chosen.
-    std::vector<double> cosines = {}, table_cosines = {};
-    Json error = nullptr;  ///< numerical
-};
-
-constexpr unsigned kDegrees = 32, kMostTerms = 25, kCubemapSize = 16;
+constexpr unsigned kMostTerms = 25, kCubemapSize = 16;
 constexpr std::size_t kSingularValues = 100;  ///< shown; the errors take in all of them
 
 formats::Status check_options(const PhaseCommand& options) {
@@ -76,17 +53,17 @@ formats::Status check_options(const PhaseCommand& options) {
         {options.rms_angle_option, "--rms-angle", Type::gaussian,
          "give it with --type gaussian alone"},
         {options.table_option, "--table", Type::tabulated, "give it with --type table alone"},
-        {options.droplets.effective_radius_option, "--effective-radius", Type::mie,
+        {options.phase.droplets.effective_radius_option, "--effective-radius", Type::mie,
          "give it with --type mie alone"}};
     for (const Rule& rule : rules) {
-        const bool given = rule.option->count() > 0, needed = options.type == rule.type;
+        const bool given = rule.option->count() > 0, needed = options.phase.type == rule.type;
         if (given != needed) {
             return refuse(rule.name, given ? "this type has no such value" : "it is missing",
                           rule.remedy);
         }
     }
-    if (options.type != PhaseType::mie) {
-        for (const std::string& name : given_droplet_options(options.droplets)) {
+    if (options.phase.type != PhaseType::mie) {
+        for (const std::string& name : given_droplet_options(options.phase.droplets)) {
             return refuse(name.c_str(), "this type has no such value",
                           "give it with --type mie alone");
         }
@@ -97,84 +74,8 @@ formats::Status check_options(const PhaseCommand& options) {
     return formats::ok_status();
 }
 
-/// Rows of a table of droplets: what is left out is within this of the line between its neighbours.
-constexpr double kRowTolerance = 2e-3;
-
-formats::Result<Subject> make_droplet_subject(const DropletOptions& options) {
-    const auto& given = options.substance.wavelengths;
-    const std::vector<double> wavelengths = given.empty() ? std::vector{550 / 1e9} : given;
-    const auto weights = weights_of(options.substance, wavelengths.size());
-    if (!weights) {
-        return weights.error();
-    }
-    auto optics = average_droplets(options, wavelengths);
-    if (!optics) {
-        return std::move(optics).error();
-    }
-    const bake::DropletOptics droplets =
-        optics->size() == 1 ? optics->front() : bake::mix_wavelengths(*optics, *weights);
-    Subject subject;
-    subject.json = {{"type", "mie"},
-                    {"wavelength_m", droplets.wavelength},
-                    {"index", {droplets.index.real(), droplets.index.imag()}}};
-    if (wavelengths.size() > 1) {
-        subject.json["wavelengths_m"] = wavelengths;
-        subject.json["weights"] = *weights;
-    }
-    subject.json.update(describe_droplets(options.droplets));
-    subject.error = describe_error(droplets);
-    subject.series = bake::expand_table(droplets.phase, kDegrees);
-    const std::vector<double> angles = bake::thin_table(droplets.phase, kRowTolerance).angle;
-    for (auto angle = angles.rbegin(); angle != angles.rend(); ++angle) {
-        subject.cosines.push_back(std::cos(*angle));
-    }
-    subject.table_cosines = subject.cosines;
-    subject.p = [phase = droplets.phase](double cosine) {
-        return bake::eval_table(phase, std::acos(std::clamp(cosine, -1.0, 1.0)));
-    };
-    return subject;
-}
-
-formats::Result<Subject> make_subject(const PhaseCommand& options) {
-    using Type = PhaseType;
-    if (options.type == PhaseType::mie) {
-        return make_droplet_subject(options.droplets);
-    }
-    if (options.type == Type::henyey_greenstein) {
-        const double g = options.g;  // not rounded to the single precision of PhaseFunction
-        return Subject{[g](double cosine) { return bake::henyey_greenstein(cosine, g); },
-                       bake::expand_henyey_greenstein(g, kDegrees),
-                       {{"type", "hg"}, {"g", g}}};
-    }
-    PhaseFunction phase;
-    Json json;
-    if (options.type == Type::gaussian) {
-        phase.type = PhaseFunction::Type::gaussian;
-        phase.rms_angle = static_cast<float>(options.rms_angle);
-        json = {{"type", "gaussian"}, {"rms_angle", options.rms_angle}};
-    } else if (options.type == Type::tabulated) {
-        auto table = formats::read_phase_table(options.table);
-        if (!table) {
-            return std::move(table).error();
-        }
-        phase = std::move(*table);
-        json = {{"type", "table"}, {"file", options.table}};
-    } else if (options.type == Type::rayleigh) {
-        phase.type = PhaseFunction::Type::rayleigh;
-        json = {{"type", "rayleigh"}};
-    } else {
-        phase.type = PhaseFunction::Type::isotropic;
-        json = {{"type", "isotropic"}};
-    }
-    const bake::PhaseDensity density = bake::make_phase_density(phase);
-    Subject subject{[density](double cosine) { return bake::eval_phase(density, cosine); },
-                    bake::expand_phase(phase, kDegrees), std::move(json)};
-    subject.table_cosines.assign(phase.cosine.begin(), phase.cosine.end());
-    return subject;
-}
-
 /// Everything that is printed, in order.
-Json describe(const Subject& subject, const bake::PhaseMaps& maps, unsigned samples) {
+Json describe(const PhaseSubject& subject, const bake::PhaseMaps& maps, unsigned samples) {
     Json all;
     all["phase"] = subject.json;
     all["mean_cosine"] = subject.series.lambda[1];
@@ -222,65 +123,19 @@ void print_csv(const Json& all) {
     print("singular_value", nullptr, all["singular_values"]);
 }
 
-/// Ascending, from -1 to 1, each in single precision and once: the reader of tables keeps no more.
-std::vector<double> round_cosines(std::vector<double> cosines) {
-    for (double& cosine : cosines) {
-        cosine = static_cast<double>(static_cast<float>(cosine));
-    }
-    cosines.erase(std::unique(cosines.begin(), cosines.end()), cosines.end());
-    return cosines;
-}
-
-/// Rows that crowd where the function bends. They are chosen among angles in steps of 0.2 % from
-/// both ends on, where peaks are.
-std::vector<double> choose_cosines(const std::function<double(double)>& p) {
-    constexpr double kFirst = 1e-4, kStep = 1.002;  // smaller angles have the rounded cosine 1
-    std::vector<double> cosines{-1};
-    for (double angle = kFirst; angle < std::numbers::pi / 2; angle *= kStep) {
-        cosines.push_back(-std::cos(angle));
-    }
-    for (std::size_t i = cosines.size(); i-- > 0;) {
-        cosines.push_back(-cosines[i]);
-    }
-    // Below, values would take hundreds of rows and make no difference.
-    constexpr double kLeast = 1e-9;
-    bake::AngularTable table;
-    for (const double cosine : round_cosines(std::move(cosines))) {
-        const double value = p(cosine);
-        table.angle.push_back(std::acos(-cosine));  // ascending
-        table.value.push_back(value < kLeast ? 0 : value);
-    }
-    std::vector<double> chosen;
-    for (const double angle : bake::thin_table(table, kRowTolerance).angle) {
-        chosen.push_back(-std::cos(angle));
-    }
-    return round_cosines(std::move(chosen));
-}
-
-/// A table as media files name them (formats/media/README.md).
-formats::Status write_phase_table(const std::string& path, const Subject& subject) {
-    std::string text = "cosine value\n";
-    for (const double cosine : subject.table_cosines.empty()
-                                   ? choose_cosines(subject.p)
-                                   : round_cosines(subject.table_cosines)) {
-        text += fmt::format("{} {}\n", cosine, subject.p(cosine));
-    }
-    return formats::write_file_atomically(path, text);
-}
-
 int run(const PhaseCommand& options) {
     if (const auto status = check_options(options); !status) {
         return report_error(status.error());
     }
     if (!options.table_output.empty()) {
-        const std::vector<std::filesystem::path> inputs(options.table.empty() ? 0 : 1,
-                                                        options.table);
+        const std::vector<std::filesystem::path> inputs(options.phase.table.empty() ? 0 : 1,
+                                                        options.phase.table);
         const OutputFile output{"--table-output", options.table_output, {}};
         if (const auto status = check_outputs({&output, 1}, inputs); !status) {
             return report_error(status.error());
         }
     }
-    const auto subject = make_subject(options);
+    const auto subject = make_phase_subject(options.phase);
     if (!subject) {
         return report_error(subject.error());
     }
@@ -288,7 +143,7 @@ int run(const PhaseCommand& options) {
     constexpr double kMostRowError = 0.01;
     if (maps.row_error > kMostRowError) {
         const formats::Status status = report_warnings({formats::make_warning(
-            options.table, "",
+            options.phase.table, "",
             fmt::format("the lobe is too narrow for a cube map of {} x {} texels, whose rows "
                         "integrate to 1 within {:.2g} only",
                         kCubemapSize, kCubemapSize, maps.row_error),
@@ -318,7 +173,7 @@ void add_phase_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<PhaseCommand>();
     CLI::App* command = app.add_subcommand(
         "phase", "Tabulate a phase function and say how many terms its factors need");
-    command->add_option("--type", options->type, "as in media files: formats/media/README.md")
+    command->add_option("--type", options->phase.type, "as in media files: formats/media/README.md")
         ->transform(one_of<Type>({{"hg", Type::henyey_greenstein},
                                   {"isotropic", Type::isotropic},
                                   {"rayleigh", Type::rayleigh},
@@ -327,22 +182,24 @@ void add_phase_command(CLI::App& app, Job& job) {
                                   {"mie", Type::mie}}))
         ->option_text("hg|isotropic|rayleigh|gaussian|table|mie [hg]");
     options->g_option =
-        command->add_option("--g", options->g, "mean cosine of hg, -0.99 to 0.99; above 0: forward")
+        command
+            ->add_option("--g", options->phase.g,
+                         "mean cosine of hg, -0.99 to 0.99; above 0: forward")
             ->check(real_number(-formats::media::kMaxMeanCosine, formats::media::kMaxMeanCosine))
             ->option_text("G");
     options->rms_angle_option =
         command
-            ->add_option("--rms-angle", options->rms_angle,
+            ->add_option("--rms-angle", options->phase.rms_angle,
                          "root mean square angle of the gaussian, in radians, 0.001 to 1")
             ->check(real_number(formats::media::kMinRmsAngle, 1))
             ->option_text("A");
     options->table_option =
         command
-            ->add_option("--table", options->table,
+            ->add_option("--table", options->phase.table,
                          "measured function: lines of a cosine and a value, cosines ascending from "
                          "-1 to 1, values relative")
             ->option_text("FILE");
-    add_droplet_options(*command, options->droplets, true);
+    add_droplet_options(*command, options->phase.droplets, true);
     options->samples_option =
         command
             ->add_option("--samples", options->samples,

@@ -14,7 +14,7 @@ TEST(Info, TellsKnobsPlanErrorAndSections) {
     SmallScene small;
     const Outcome text = run_opaline({"info", small.baked()});
     EXPECT_EQ(text.exit_code, 0);
-    for (const char* word : {"cube map 16", "measured error", "direct", "Brick", "TRAN", "MESH"}) {
+    for (const char* word : {"cube map 16", "measured error", "% RMS (95 %: ", "direct", "Brick", "TRAN", "MESH"}) {
         EXPECT_THAT(text.out, HasSubstr(word));
     }
     const Outcome json = run_opaline({"info", small.baked(), "--json"});

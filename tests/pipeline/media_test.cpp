@@ -7,6 +7,7 @@
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/effects/single/rules_single.h"
+#include "bake/plan/scattered_once.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_medium.h"
@@ -207,8 +208,8 @@ TEST(TranslucentPipeline, PlanFollowsTheMedium) {
     EXPECT_EQ(on(ketchup), all);
     EXPECT_EQ(on(milk), all);
     // What scatters little returns mostly what scattered once.
-    EXPECT_GT(single_share(ketchup), 0.5);
-    EXPECT_LT(single_share(*formats::media_preset("spectralon")), 0.2);
+    EXPECT_GT(share_scattered_once(ketchup), 0.5);
+    EXPECT_LT(share_scattered_once(*formats::media_preset("spectralon")), 0.2);
     Medium medium = milk;
     medium.eta = 1;
     EXPECT_EQ(on(medium), (Names{"multiple", "single"})) << "nothing is mirrored";

@@ -1,5 +1,6 @@
 #include "bake/effects/multiple/choose_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -9,6 +10,7 @@
 #include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/walk_costs.h"
+#include "bake/plan/scattered_once.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
@@ -23,14 +25,23 @@ double expected_error(const formats::Medium& medium, const MaterialFacts& body) 
                                                  : 0);
 }
 
+constexpr double kPeaked = 0.5;  // mean cosine, either way
+
 // Sites so far apart that they hold what the dipole lacks blur light that scatters once. Where its
 // phase function is peaked, terms in the view err by more (tests/bench/RESULTS.md, "Walks"), and
 // where the medium varies nothing else knows it.
 bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
-    constexpr double kPeaked = 0.5;
     return transport_mean_free_path(medium) > 0 && body.area > 0 &&
            (body.varies || !expected_sites(medium, body, knobs).is_residual ||
             std::abs(formats::mean_cosine(medium.phase)) >= kPeaked);
+}
+
+// What the dipole errs by because light scattered few times goes on in a peak: that scattered once
+// is left to terms in the view, and at most this many.
+double peak_error(const formats::Medium& medium) {
+    constexpr unsigned kMostTerms = 25;
+    return std::abs(formats::mean_cosine(medium.phase)) >= kPeaked ? once_error(medium, kMostTerms)
+                                                                   : 0;
 }
 
 // A profile that the user chose is meant.
@@ -63,8 +74,10 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
                    const Knobs& knobs) {
     const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
     return asked == MultipleModel::automatic
-               ? body.varies || (!is_fixed(medium) && (layered || expected_error(medium, body) >
-                                                                      allowed_model_error(knobs)))
+               ? body.varies ||
+                     (!is_fixed(medium) &&
+                      (layered || std::max(expected_error(medium, body), peak_error(medium)) >
+                                      allowed_model_error(knobs)))
                : asked != MultipleModel::dipole;
 }
 
@@ -91,7 +104,7 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
         return choice;
     }
     const bool is_measured = is_doubted || (may_walk && measures_models(inputs.knobs));
-    if (layered && may_walk) {
+    if (may_walk && (layered || (choice.all_orders && peak_error(inputs.medium()) > allowed))) {
         choice.model = MultipleModel::walks;
         return choice;
     }
@@ -145,6 +158,13 @@ PlanEntry decide_model(const PlanInput& input) {
         entry.reason = "walks: it contains other media";
     } else if (!effect.on) {
         entry.reason = "dipole: no light that scatters many times is simulated";
+    } else if (const double peak = peak_error(medium); peak > allowed) {
+        entry.on = true;
+        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
+        entry.reason =
+            "walks: the medium scatters in a peak, which the dipole leaves to terms in the view "
+            "that err by some " +
+            percent(peak);
     } else if (error <= allowed) {
         entry.reason = "dipole: the body is so thick that it errs by some " + percent(error);
     } else if (measures_models(input.knobs)) {

@@ -77,7 +77,7 @@ PlanEntry decide_spread(const PlanInput& input) {
                            [](const PlanEntry& e) { return e.on && e.terms > 1; })) {
         entry.reason = "the rows depend on the view";
     } else if (medium.sigma_s == formats::Rgb{}) {
-        entry.reason = "nothing scatters";
+        entry.reason = "what crosses the body unscattered leaves elsewhere than where it entered";
     } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
                            [](const PlanEntry& e) { return e.on && e.layered; })) {
         entry.reason = "light goes through other media inside";

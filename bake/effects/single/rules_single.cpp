@@ -6,12 +6,9 @@
 #include <numbers>
 
 #include "bake/effects/single/single_knobs.h"
-#include "bake/scattering/dipole.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_once.h"
+#include "bake/plan/scattered_once.h"
 #include "bake/scattering/phase.h"
 #include "bake/scattering/phase_series.h"
-#include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
 namespace {
@@ -118,9 +115,7 @@ PlanEntry decide_terms(const PlanInput& input) {
         entry.terms = 4;
     }
     entry.on = entry.terms > 1;
-    const auto error_of = [&](std::uint32_t terms) {
-        return percent(single_share(medium) * phase_rms_relative(series, terms));
-    };
+    const auto error_of = [&](std::uint32_t terms) { return percent(once_error(medium, terms)); };
     entry.reason = std::to_string(entry.terms) + (entry.on ? " terms" : " term") +
                    " of the phase function, which leave" + (entry.on ? " " : "s ") +
                    error_of(entry.terms) + " of the light wrong";
@@ -135,24 +130,8 @@ PlanEntry decide_terms(const PlanInput& input) {
     return entry;
 }
 
-double single_share(const formats::Medium& medium) {
-    const double g = formats::mean_cosine(medium.phase);
-    const auto eta = static_cast<double>(medium.eta);
-    const double once = half_space_once(eta), escape = 1 - fresnel_moments(eta).external;
-    double share = 0;
-    for (const auto& [sigma_s, sigma_a] : bands_of(medium)) {
-        if (sigma_s > 0) {
-            const double single = once * sigma_s / (sigma_s + sigma_a);
-            const double rest = escape * dipole_total(make_dipole(DipoleKind::better,
-                                                                  (1 - g) * sigma_s, sigma_a, eta));
-            share = std::max(share, single / (single + rest));
-        }
-    }
-    return share;
-}
-
 std::uint32_t needed_terms(const formats::Medium& medium, const Knobs& knobs) {
-    const double share = single_share(medium);
+    const double share = share_scattered_once(medium);
     return share > 0 ? choose_phase_terms(expand_phase(medium.phase, kSeriesDegrees),
                                           knobs[kPhaseTolerance] / share)
                      : 1;

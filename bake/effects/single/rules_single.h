@@ -17,10 +17,6 @@ bool is_anisotropic(const PlanInput& input);
 /// phase function from its first term, 4 pi phase_rms(series, 1).
 PlanEntry decide_terms(const PlanInput& input);
 
-/// The share of single scattering in the reflectance of a half space under uniform light, largest
-/// over the bands; in [0, 1].
-double single_share(const formats::Medium& medium);
-
 /// The smallest K whose error, times the share of single scattering, is at most
 /// `knobs.phase_tolerance`.
 std::uint32_t needed_terms(const formats::Medium& medium, const Knobs& knobs);

@@ -13,6 +13,7 @@
 #include "bake/effects/single/single_rates.h"
 #include "bake/effects/single/single_stage.h"
 #include "bake/effects/single/true_single.h"
+#include "bake/plan/scattered_once.h"
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
 #include "bake/scattering/phase_series.h"
@@ -149,7 +150,7 @@ void warn_of_short_series(const PlanInput& input, const PlanEntry& entry,
     }
     const formats::Medium& medium = *input.material.medium;
     const double error = phase_rms_relative(expand_phase(medium.phase, kDegrees), kMostTerms);
-    if (error * single_share(medium) > input.knobs[kPhaseTolerance]) {
+    if (error * share_scattered_once(medium) > input.knobs[kPhaseTolerance]) {
         warnings.push_back(formats::make_warning(
             "", entry.subject.name,
             "the phase function is too narrow for " + std::to_string(kMostTerms) +

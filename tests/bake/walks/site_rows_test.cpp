@@ -1,3 +1,4 @@
+#include "bake/effects/multiple/walks/site_row_sum.h"
 #include "bake/effects/multiple/walks/site_rows.h"
 
 #include <gtest/gtest.h>

@@ -10,6 +10,7 @@
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/effects/multiple/walks/inner_field.h"
 #include "bake/effects/multiple/walks/site_field.h"
+#include "bake/effects/multiple/walks/site_row_sum.h"
 #include "bake/effects/multiple/walks/site_rows.h"
 #include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/effects/multiple/walks/walk_space.h"

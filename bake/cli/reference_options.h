@@ -1,0 +1,41 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "bake/cli/camera_options.h"
+#include "bake/cli/path_integration.h"
+#include "bake/cli/progress.h"
+#include "formats/opal/result.h"
+
+namespace opaline::cli {
+
+/// Of `opaline reference`, as its help says; 0: not given.
+struct ReferenceOptions {
+    std::string scene, media, light, output, terms, texture_filter = "none";
+    CameraOptions camera;
+    PathIntegrationOptions paths;
+    double metres_per_unit = 1, rotate_light = 0, seconds = 0;
+    std::uint32_t receivers = 0, samples = 0, max_depth = 0;
+    std::uint64_t seed = 0;
+    float exposure = 0;
+    unsigned threads = 0;
+    ProgressStyle progress = ProgressStyle::automatic;
+    std::vector<const CLI::Option*> picture_options;  ///< that say nothing of receivers
+};
+
+/// `options` must outlive the parsing.
+void add_reference_options(CLI::App& command, ReferenceOptions& options);
+
+/// Where the variance beside OUT.exr or OUT.png goes: OUT.var.exr.
+std::string variance_path(const std::string& output);
+
+/// Outputs that are inputs or each other, and options that say nothing of a table or a picture.
+/// `inputs` that the scene has besides. Errors: usage.
+formats::Status check_reference_paths(const ReferenceOptions& options,
+                                      std::vector<std::filesystem::path> inputs);
+
+}  // namespace opaline::cli

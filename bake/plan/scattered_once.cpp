@@ -1,0 +1,36 @@
+#include "bake/plan/scattered_once.h"
+
+#include <algorithm>
+
+#include "bake/plan/plan_input.h"
+#include "bake/scattering/dipole.h"
+#include "bake/scattering/fresnel.h"
+#include "bake/scattering/half_space_once.h"
+#include "bake/scattering/phase_series.h"
+#include "formats/media/mean_cosine.h"
+
+namespace opaline::bake {
+
+double share_scattered_once(const formats::Medium& medium) {
+    const double g = formats::mean_cosine(medium.phase);
+    const auto eta = static_cast<double>(medium.eta);
+    const double once = half_space_once(eta), escape = 1 - fresnel_moments(eta).external;
+    double share = 0;
+    for (const auto& [sigma_s, sigma_a] : bands_of(medium)) {
+        if (sigma_s > 0) {
+            const double single = once * sigma_s / (sigma_s + sigma_a);
+            const double rest = escape * dipole_total(make_dipole(DipoleKind::better,
+                                                                  (1 - g) * sigma_s, sigma_a, eta));
+            share = std::max(share, single / (single + rest));
+        }
+    }
+    return share;
+}
+
+double once_error(const formats::Medium& medium, unsigned terms) {
+    constexpr unsigned kDegrees = 5;
+    return share_scattered_once(medium) *
+           phase_rms_relative(expand_phase(medium.phase, kDegrees), terms);
+}
+
+}  // namespace opaline::bake
