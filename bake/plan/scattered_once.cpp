@@ -14,14 +14,14 @@ namespace opaline::bake {
 double share_scattered_once(const formats::Medium& medium) {
     const double g = formats::mean_cosine(medium.phase);
     const auto eta = static_cast<double>(medium.eta);
-    const double once = half_space_once(eta), escape = 1 - fresnel_moments(eta).external;
+    const double reflected = half_space_once(eta), escape = 1 - fresnel_moments(eta).external;
     double share = 0;
     for (const auto& [sigma_s, sigma_a] : bands_of(medium)) {
         if (sigma_s > 0) {
-            const double single = once * sigma_s / (sigma_s + sigma_a);
+            const double once = reflected * sigma_s / (sigma_s + sigma_a);
             const double rest = escape * dipole_total(make_dipole(DipoleKind::better,
                                                                   (1 - g) * sigma_s, sigma_a, eta));
-            share = std::max(share, single / (single + rest));
+            share = std::max(share, once / (once + rest));
         }
     }
     return share;

@@ -25,23 +25,27 @@ double expected_error(const formats::Medium& medium, const MaterialFacts& body) 
                                                  : 0);
 }
 
-constexpr double kPeaked = 0.5;  // mean cosine, either way
-
 // Sites so far apart that they hold what the dipole lacks blur light that scatters once. Where its
 // phase function is peaked, terms in the view err by more (tests/bench/RESULTS.md, "Walks"), and
 // where the medium varies nothing else knows it.
 bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
     return transport_mean_free_path(medium) > 0 && body.area > 0 &&
            (body.varies || !expected_sites(medium, body, knobs).is_residual ||
-            std::abs(formats::mean_cosine(medium.phase)) >= kPeaked);
+            scatters_in_peak(medium));
 }
 
 // What the dipole errs by because light scattered few times goes on in a peak: that scattered once
 // is left to terms in the view, and at most this many.
 double peak_error(const formats::Medium& medium) {
     constexpr unsigned kMostTerms = 25;
-    return std::abs(formats::mean_cosine(medium.phase)) >= kPeaked ? once_error(medium, kMostTerms)
-                                                                   : 0;
+    return scatters_in_peak(medium) ? once_error(medium, kMostTerms) : 0;
+}
+
+// Walks themselves err by some 15 % where light leaves in a peak (tests/bench/RESULTS.md, "Sites
+// inside").
+bool is_too_peaked(const formats::Medium& medium, const Knobs& knobs) {
+    constexpr double kWalksErr = 0.15;
+    return peak_error(medium) > std::max(kWalksErr, allowed_model_error(knobs));
 }
 
 // A profile that the user chose is meant.
@@ -55,6 +59,11 @@ bool is_fixed(const formats::Medium& medium) {
 std::string percent(double error) {
     const std::string text = std::to_string(1e-1 * std::round(1e3 * error));
     return text.substr(0, text.find('.') + 2) + " %";
+}
+
+bool scatters_in_peak(const formats::Medium& medium) {
+    constexpr double kPeaked = 0.5;
+    return std::abs(formats::mean_cosine(medium.phase)) >= kPeaked;
 }
 
 double allowed_model_error(const Knobs& knobs) {
@@ -74,10 +83,9 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
                    const Knobs& knobs) {
     const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
     return asked == MultipleModel::automatic
-               ? body.varies ||
-                     (!is_fixed(medium) &&
-                      (layered || std::max(expected_error(medium, body), peak_error(medium)) >
-                                      allowed_model_error(knobs)))
+               ? body.varies || (!is_fixed(medium) &&
+                                 (layered || is_too_peaked(medium, knobs) ||
+                                  expected_error(medium, body) > allowed_model_error(knobs)))
                : asked != MultipleModel::dipole;
 }
 
@@ -104,7 +112,8 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
         return choice;
     }
     const bool is_measured = is_doubted || (may_walk && measures_models(inputs.knobs));
-    if (may_walk && (layered || (choice.all_orders && peak_error(inputs.medium()) > allowed))) {
+    if (may_walk &&
+        (layered || (choice.all_orders && is_too_peaked(inputs.medium(), inputs.knobs)))) {
         choice.model = MultipleModel::walks;
         return choice;
     }
@@ -158,13 +167,13 @@ PlanEntry decide_model(const PlanInput& input) {
         entry.reason = "walks: it contains other media";
     } else if (!effect.on) {
         entry.reason = "dipole: no light that scatters many times is simulated";
-    } else if (const double peak = peak_error(medium); peak > allowed) {
+    } else if (is_too_peaked(medium, input.knobs)) {
         entry.on = true;
         entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
         entry.reason =
             "walks: the medium scatters in a peak, which the dipole leaves to terms in the view "
             "that err by some " +
-            percent(peak);
+            percent(peak_error(medium));
     } else if (error <= allowed) {
         entry.reason = "dipole: the body is so thick that it errs by some " + percent(error);
     } else if (measures_models(input.knobs)) {

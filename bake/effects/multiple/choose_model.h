@@ -16,6 +16,10 @@ std::string percent(double error);
 /// Knobs::error_target; without one, as the quality allows.
 double allowed_model_error(const Knobs& knobs);
 
+/// The mean cosine is 0.5 or more, either way: light scattered once depends on the view by more
+/// than few terms hold.
+bool scatters_in_peak(const formats::Medium& medium);
+
 /// Whether models are compared before the bake (measure_models), instead of estimated.
 bool measures_models(const Knobs& knobs);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/effects/multiple/choose_model.h"
 #include "bake/scattering/dipole.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_once.h"
@@ -81,6 +82,10 @@ PlanEntry decide_spread(const PlanInput& input) {
     } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
                            [](const PlanEntry& e) { return e.on && e.layered; })) {
         entry.reason = "light goes through other media inside";
+    } else if (scatters_in_peak(medium) &&
+               std::any_of(input.earlier.begin(), input.earlier.end(),
+                           [](const PlanEntry& e) { return e.on && e.all_orders; })) {
+        entry.reason = "light that scatters in a peak leaves by random walks alone";
     } else if (!is_worth(entry.bound, input, entry.forced)) {
         entry.on = false;
         entry.reason = "the medium is so dense that light leaves where it entered";
