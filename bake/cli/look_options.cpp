@@ -5,12 +5,22 @@
 
 namespace opaline::cli {
 
-void add_look_options(CLI::App& command, const LookOptions& options) {
+void add_rotate_light_option(CLI::App& command, double& degrees) {
     command
-        .add_option("--rotate-light", options.rotate_light,
+        .add_option("--rotate-light", degrees,
                     "turn the light about +Y, from +Z toward +X [degrees]")
         ->check(real_number(-1e6, 1e6))
         ->option_text("DEG [0]");
+}
+
+void add_exposure_option(CLI::App& command, float& exposure) {
+    command.add_option("--exposure", exposure, "brighter by a factor of 2^EV")
+        ->check(real_number(-64, 64))
+        ->option_text("EV [0]");
+}
+
+void add_look_options(CLI::App& command, const LookOptions& options) {
+    add_rotate_light_option(command, options.rotate_light);
     command
         .add_option("--terms", options.terms,
                     "components to show: all, or some of " +
@@ -20,9 +30,7 @@ void add_look_options(CLI::App& command, const LookOptions& options) {
                         " apart need a bake with --separate-terms")
         ->check(term_list())
         ->option_text("all|LIST [all]");
-    command.add_option("--exposure", options.exposure, "brighter by a factor of 2^EV")
-        ->check(real_number(-64, 64))
-        ->option_text("EV [0]");
+    add_exposure_option(command, options.exposure);
     command
         .add_option("--tone-map", options.tone_map,
                     "of screens and .png. neutral: Khronos PBR Neutral; none: cut off at 1")

@@ -18,6 +18,10 @@ struct LookOptions {
     std::optional<std::uint32_t>& coefficients;  ///< of a row
 };
 
+/// Those that other commands have as well.
+void add_rotate_light_option(CLI::App& command, double& degrees);
+void add_exposure_option(CLI::App& command, float& exposure);
+
 void add_look_options(CLI::App& command, const LookOptions& options);
 
 }  // namespace opaline::cli

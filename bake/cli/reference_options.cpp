@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "bake/cli/inputs.h"
+#include "bake/cli/look_options.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
 #include "bake/cli/scene_options.h"
@@ -142,14 +143,8 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options) {
          {"--size", "--azimuth", "--elevation", "--distance", "--target", "--up", "--fov"}) {
         options.picture_options.push_back(command.get_option(name));
     }
-    command.add_option("--exposure", options.exposure, "brighter by a factor of 2^EV")
-        ->check(real_number(-64, 64))
-        ->option_text("EV [0]");
-    command
-        .add_option("--rotate-light", options.rotate_light,
-                    "turn the light about +Y, from +Z toward +X [degrees]")
-        ->check(real_number(-1e6, 1e6))
-        ->option_text("DEG [0]");
+    add_exposure_option(command, options.exposure);
+    add_rotate_light_option(command, options.rotate_light);
     add_progress_option(command, options.progress);
 }
 

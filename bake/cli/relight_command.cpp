@@ -8,6 +8,7 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/light_with_layers.h"
+#include "bake/cli/look_options.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -223,11 +224,7 @@ void add_relight_command(CLI::App& app, Job& job) {
                          " apart need a bake with --separate-terms")
         ->check(term_list())
         ->option_text("all|LIST [all]");
-    command
-        ->add_option("--rotate-light", options->rotate_light,
-                     "turn the light about +Y, from +Z toward +X [degrees]")
-        ->check(real_number(-1e6, 1e6))
-        ->option_text("DEG [0]");
+    add_rotate_light_option(*command, options->rotate_light);
     add_time_option(*command, options->time);
     command->add_option("--threads", options->threads, "0: one per core")
         ->transform(whole_number(0, 1024))

@@ -79,7 +79,7 @@ TEST(Spread, IsSimulatedAsSoonAsItCouldShow) {
     EXPECT_TRUE(plan_of(inverted).on) << "a facet seen from behind";
     formats::Medium forward = clay(5e-5f);
     forward.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.6f, 0, {}, {}};
-    EXPECT_TRUE(plan_of(ball(5, forward)).on) << "single scattering takes several terms";
+    EXPECT_TRUE(plan_of(ball(5, forward)).on) << "one band absorbs, and light leaves it in a peak";
     forward = tests::make_grey_medium(1.8e5f, 2e4f);
     forward.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.9f, 0, {}, {}};
     EXPECT_TRUE(plan_of(ball(5, forward)).on) << "walks hold light that leaves in a peak";
