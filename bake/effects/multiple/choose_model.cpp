@@ -41,11 +41,16 @@ double peak_error(const formats::Medium& medium) {
     return scatters_in_peak(medium) ? once_error(medium, kMostTerms) : 0;
 }
 
-// Walks themselves err by some 15 % where light leaves in a peak (tests/bench/RESULTS.md, "Sites
-// inside").
+// What walks err by where light leaves in such a peak (tests/bench/RESULTS.md, "Sites inside").
+constexpr double kWalksErrInPeak = 0.15;
+
 bool is_too_peaked(const formats::Medium& medium, const Knobs& knobs) {
-    constexpr double kWalksErr = 0.15;
-    return peak_error(medium) > std::max(kWalksErr, allowed_model_error(knobs));
+    return peak_error(medium) > std::max(kWalksErrInPeak, allowed_model_error(knobs));
+}
+
+// Of walks that follow light scattered once.
+double walks_error(const formats::Medium& medium) {
+    return peak_error(medium) > kWalksErrInPeak ? kWalksErrInPeak : 0;
 }
 
 // A profile that the user chose is meant.
@@ -101,6 +106,7 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     choice.model = is_auto ? MultipleModel::dipole : asked;
     choice.all_orders = may_hold && !inputs.layout.at_entry;
     choice.dipole_error = expected_error(inputs.medium(), body);
+    choice.walks_error = choice.all_orders ? walks_error(inputs.medium()) : 0;
     // Peaked media may leave this layout once light scattered once has terms of its own.
     const bool may_walk = is_auto && expects_walks(inputs.medium(), body, layered, inputs.knobs) &&
                           (may_hold || !inputs.layout.at_entry);
@@ -202,9 +208,12 @@ PlanEntry decide_model(const PlanInput& input) {
                        : entry.on ? std::string_view()
                                   : "dipole";
     }
-    entry.model_error = effect.on && !entry.on ? error : 0;
     entry.all_orders = effect.on && entry.on && asked != MultipleModel::scaled &&
                        (layered || hold_all_orders(medium, input.subject, input.knobs));
+    entry.model_error = !effect.on         ? 0
+                        : !entry.on        ? error
+                        : entry.all_orders ? walks_error(medium)
+                                           : 0;
     return entry;
 }
 

@@ -36,12 +36,14 @@ struct ModelChoice {
     double dipole_error = 0;  ///< relative RMS, as a share of multiple scattering alone: estimated,
                               ///< found, or measured
     bool all_orders = false;  ///< walks may follow light scattered once as well
+    double walks_error =
+        0;  ///< relative RMS of walks, where known: of media that scatter in a peak
 
     /// What the model taken errs by.
     double error() const {
         return model == MultipleModel::dipole   ? dipole_error
                : model == MultipleModel::scaled ? errors.scaled
-                                                : 0;
+                                                : walks_error;
     }
 };
 
