@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -14,6 +15,7 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/accuracy/model_truth.h"
+#include "bake/effects/interreflection/interreflection_knobs.h"
 #include "runtime/light_vector.h"
 #include "tests/support/walk_bake.h"
 
@@ -121,6 +123,53 @@ TEST(BouncedMedia, WallsOfASlotSendEachOtherHardlyMoreThanPathTracingFinds) {
     EXPECT_LT(std::sqrt(variance), 0.02 * traced);
     EXPECT_GT(sum, 0.9 * traced);
     EXPECT_LT(sum, 1.6 * traced);
+}
+
+// A dielectric as black as ink on a floor: what the floor has of it is mirrored, most of it at
+// grazing angles.
+TEST(BouncedMedia, AFloorReceivesWhatABlackBodyOnItMirrors) {
+    tests::Primitive floor =
+        tests::make_quad({-2.45f, -1.001f, -2.45f}, {0, 0, 4.9f}, {4.9f, 0, 0}, 40);
+    floor.material = 1;
+    tests::Scene scene = tests::make_translucent_scene(
+        {std::move(floor), tests::make_cube(6, false)}, tests::make_grey_medium(0, 1000, 1.6f));
+    scene.materials[0].medium->roughness = 0;
+    scene.materials[1].base_color = {0.5f, 0.5f, 0.5f};
+    ModelProbes probes = choose_model_probes(scene, 600, 0, {}).value();
+    // Those of the floor that see the sky.
+    std::erase_if(probes.receivers, [&](const ReferenceReceiver& r) {
+        const glm::vec3 x = scene.primitives[r.primitive].position[r.vertex];
+        return r.primitive != 0 || std::max(std::abs(x.x), std::abs(x.z)) < 1.05f;
+    });
+    probes.lights.resize(1);
+    ModelCheckOptions effort;
+    effort.simulated = TermSet::interreflection;
+    effort.max_events = 1500000;
+    const LightCheck truth = trace_model_truth(scene, probes, effort, {}).value().front();
+    double traced = 0, variance = 0;
+    for (const ModelPair& pair : truth.pairs) {
+        traced += pair.truth;
+        variance += pair.variance;
+    }
+    BakeOptions options = tests::only({"direct", "specular"});
+    options.quality = Quality::draft;
+    options.set(kBounceRays, 256);
+    double sum = 0;
+    for (const double sign : {-1.0, 1.0}) {
+        const BakeResult baked = tests::bake_scene(scene, options);
+        const runtime::LightVector light =
+            tests::make_light("white", baked.asset.view().cubemap_size);
+        for (const double shown :
+             relight_receivers(baked.asset.view(), probes.receivers, {.vector = light})) {
+            sum += sign * shown;
+        }
+        options.effects.emplace_back("interreflection");
+    }
+    std::printf("floor: %.3f of the truth, of %zu places, error of the truth %.3f\n", sum / traced,
+                truth.pairs.size(), std::sqrt(variance) / traced);
+    EXPECT_GT(truth.pairs.size(), 100u);
+    EXPECT_LT(std::sqrt(variance), 0.02 * traced);
+    EXPECT_NEAR(sum / traced, 1, 0.03);
 }
 
 // The effect that light scattered once may have to itself knows of the sky alone.

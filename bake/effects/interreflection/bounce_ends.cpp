@@ -16,6 +16,7 @@ BounceEnd end_of(const formats::Scene& scene, const PacketHits& hits, std::size_
                  glm::vec3 direction) {
     return {.direction = direction,
             .distance = hits.distance[lane],
+            .error = hits.error[lane],
             .material = hits.material[lane],
             .side = side_of_hit(scene, hits, lane),
             .is_met = true};

@@ -13,6 +13,7 @@ namespace opaline::bake {
 struct BounceEnd {
     glm::vec3 direction{0};      ///< unit
     float distance = 0;          ///< [m]
+    float error = 0;             ///< bound [m] on that of where it ends
     std::uint32_t material = 0;  ///< and side: of what is met
     SeenSide side;
     bool is_met = false, is_quarter = false;

@@ -1,5 +1,7 @@
 #include "bake/effects/interreflection/bounce_gather.h"
 
+#include "bake/effects/interreflection/mirrored_rays.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -109,6 +111,7 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
     std::vector<BounceEnd> ends;
     BounceGather gathered;
     gathered.rays = find_bounce_ends(scene, rays, at, grid, seed, ends);
+    std::vector<MirroredRay> mirrored;
     for (const BounceEnd& end : ends) {
         if (!end.is_met) {
             continue;
@@ -124,6 +127,11 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
         const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
         const FootprintKernel kernel = footprint_of(at.origin, end, cell, frame);
         const glm::vec3 y = at.origin + end.distance * end.direction;
+        const MirroredRay ray =
+            mirror(scene, {y, end.direction, end.error, end.material, end.side}, share, 0);
+        if (ray.share > 0) {
+            mirrored.push_back(ray);
+        }
         const std::uint32_t node = tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
         if (node == formats::kNone ||
             (look_up == LookUp::kernel &&
@@ -131,6 +139,13 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
             continue;
         }
         weights.push_back({node, share});
+    }
+    std::vector<MirroredNode> found;
+    gathered.rays += follow_mirrored(scene, rays, tree, std::move(mirrored), found);
+    for (const MirroredNode& seen : found) {
+        if (seen.node != formats::kNone) {
+            weights.push_back({seen.node, seen.share});
+        }
     }
     std::ranges::sort(weights, {}, &NodeWeight::node);
     std::size_t kept = 0;

@@ -52,7 +52,10 @@ void weigh_through(const Field& field, const BounceTree& tree, const LookThrough
     std::array<double, 3> by_band{};
     for (const SeenNode& seen : find_seen(field.inputs.bake.scene, field.inputs.bake.rays, tree,
                                           crossing.views, crossing.solid_angle, rays)) {
-        const std::array<float, 3>& weight = crossing.views[seen.view].weight;
+        std::array<float, 3> weight = crossing.views[seen.view].weight;
+        for (float& w : weight) {
+            w *= seen.share;
+        }
         const float mean = (weight[0] + weight[1] + weight[2]) / 3;
         if (!arrivals.through.empty() && arrivals.through.back().node == seen.node) {
             arrivals.through.back().weight += mean;

@@ -5,10 +5,10 @@
 
 #include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/bounce_tree.h"
-#include "bake/transport/coded_rows.h"
 #include "bake/effects/interreflection/gather_sites.h"
 #include "bake/effects/interreflection/scatterer_light.h"
 #include "bake/plan/effect.h"
+#include "bake/transport/coded_rows.h"
 
 namespace opaline::bake {
 

@@ -3,14 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "bake/effects/interreflection/scatterers.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr std::uint32_t kMostNodes = (1u << 29) - 1;
+constexpr std::size_t kSkyTexels = std::size_t{6} * kBounceCubemap * kBounceCubemap;
 
 // Area of a facet's part in a box: that of its shadow along the nearest axis over the cosine.
 float area_of(glm::vec3 extent, glm::vec3 normal) {
@@ -72,6 +76,32 @@ BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materi
         }
     }
     rows_ = CodedRows(nodes_.size(), row_size_);
+    set_sky();
+}
+
+void BounceTree::set_sky() {
+    if (row_size_ == 0 || row_size_ % kSkyTexels != 0) {
+        return;
+    }
+    rows_.resize(nodes_.size() + kSkyTexels);
+    const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
+    std::vector<float> row(row_size_);
+    for (std::size_t t = 0; t < kSkyTexels; ++t) {
+        for (std::size_t band = 0; band < row_size_; band += kSkyTexels) {
+            const std::span<float> plane = std::span(row).subspan(band, kSkyTexels);
+            std::ranges::fill(plane, 0.0f);
+            plane[t] = static_cast<float>(std::numbers::pi / face[t % face.size()]);
+            formats::haar_forward_cube(plane, kBounceCubemap);
+        }
+        rows_.set(nodes_.size() + t, row);
+    }
+}
+
+std::uint32_t BounceTree::sky_node(glm::vec3 direction) const {
+    return rows_.count() == nodes_.size()
+               ? formats::kNone
+               : static_cast<std::uint32_t>(nodes_.size()) +
+                     formats::texel_index(kBounceCubemap, {direction.x, direction.y, direction.z});
 }
 
 float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,

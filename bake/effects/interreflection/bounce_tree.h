@@ -9,13 +9,16 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/transport/coded_rows.h"
 #include "bake/effects/interreflection/surface_side.h"
+#include "bake/transport/coded_rows.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
 struct Scatterer;
+
+/// Cube map of bounced light, which is smooth: RESULTS.md, "Interreflection".
+inline constexpr std::uint32_t kBounceCubemap = 8;
 
 /// Where a footprint is on a surface. Offsets from its centre, in its own widths: their dot
 /// products with three axes, the third normal to the surface.
@@ -44,6 +47,7 @@ inline float similarity(Brightness a, Brightness b) {
 
 /// kd-trees over scatterers, one for each material, side and nearest axis of the normal, so that
 /// the two sides of a thin part never mix. Every node has a row: the mean of its scatterers'.
+/// Where rows are cube maps, texels of the sky have nodes as well, which no search finds.
 class BounceTree {
   public:
     /// `materials`: of the scene. Rows of `row_size` floats are 0 until set_rows.
@@ -63,6 +67,9 @@ class BounceTree {
     template <class Visit>
     void find_near(const FootprintKernel& kernel, const SurfaceSide& side, Brightness looked_for,
                    Visit&& visit) const;
+    /// The node of the sky in a direction, whose row is what a surface of its radiance sends out:
+    /// pi times the mean over its texel. formats::kNone where rows are no cube maps.
+    std::uint32_t sky_node(glm::vec3 direction) const;
     /// Of each scatterer, the area of its part of the surface [m^2].
     std::vector<float> cells() const;
     /// All scatterers, such that neighbours in space are mostly neighbours in the list.
@@ -98,6 +105,8 @@ class BounceTree {
     float build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
                 const Box& cell);
     std::uint32_t root_of(const SurfaceSide& side) const;
+    // Appends rows of the sky, in the order of its texels.
+    void set_sky();
     // Rows of a node and all below it, one after the other; returns its own.
     std::vector<float> set_branch(const CodedRows& rows, Range nodes);
     // second becomes the node's mean of both its children.

@@ -8,7 +8,6 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/interreflection/even_return.h"
 #include "bake/plan/medium_exitance.h"
-#include "bake/scattering/fresnel.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -114,8 +113,8 @@ void add_leaving(const RowLayout& layout, std::span<const float> weight,
     }
 }
 
-// B of points of one medium, from the rows that its effects give; and what they make of bounced
-// light.
+// B of points of one medium, from the rows that its effects give, without what the boundary mirrors
+// (mirrored_rays.h); and what they make of bounced light.
 std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::uint32_t material,
                            std::span<const std::size_t> members) {
     constexpr std::size_t kEvenPoints = 256;
@@ -145,8 +144,6 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
     const formats::Medium& medium = *field.inputs.bake.scene.materials[material].medium;
     const float eta = medium.eta;
     const std::uint32_t bands = field.light.bands;
-    // What the boundary mirrors goes on as if it were diffuse: where is wrong, how much is right.
-    const auto mirrored = static_cast<float>(fresnel_moments(static_cast<double>(eta)).external);
     std::uint64_t rays = 0;
     std::vector<float> around(kTexels), leaving(field.light.row_size());
     const auto find_leaving = [&](std::size_t m, const BandColour& colour) {
@@ -174,11 +171,10 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
             add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), crossing[m],
                         colour, bands, leaving);
         }
-        add_scaled(around, {mirrored, mirrored, mirrored}, bands, leaving);
         s.openness = openness_of(field, around);
         const BandColour share = even.share(s.position);
         for (std::uint32_t b = 0; b < bands; ++b) {
-            field.light.reflect[i][b] = std::clamp(mirrored + colour[b] * share[b], 0.0f, 1.0f);
+            field.light.reflect[i][b] = std::clamp(colour[b] * share[b], 0.0f, 1.0f);
         }
         field.light.emitted.set(i, leaving);
     }

@@ -5,14 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "bake/transport/coded_rows.h"
+#include "bake/effects/interreflection/bounce_tree.h"
 #include "bake/effects/interreflection/scatterers.h"
 #include "bake/plan/effect.h"
+#include "bake/transport/coded_rows.h"
 
 namespace opaline::bake {
-
-/// Cube map of bounced light, which is smooth: RESULTS.md, "Interreflection".
-inline constexpr std::uint32_t kBounceCubemap = 8;
 
 /// By band; of one band the first.
 using BandColour = std::array<float, 3>;

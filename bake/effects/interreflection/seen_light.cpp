@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/mirrored_rays.h"
 #include "bake/effects/interreflection/scatterers.h"
 
 namespace opaline::bake {
@@ -16,6 +18,7 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
     constexpr std::size_t kLanes = RayPacket::kSize;
     constexpr float kGrazing = 1e-2f;
     std::vector<SeenNode> seen;
+    std::vector<MirroredRay> mirrored;
     seen.reserve(views.size());
     for (std::size_t begin = 0; begin < views.size(); begin += kLanes) {
         const std::span<const SurfaceView> some =
@@ -43,11 +46,25 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
                 tree.find(some[i].origin + t * some[i].direction,
                           {hits.material[i], side.behind, side.normal}, area);
             if (node != formats::kNone) {
-                seen.push_back({node, static_cast<std::uint32_t>(begin + i)});
+                seen.push_back({node, static_cast<std::uint32_t>(begin + i), 1});
+            }
+            const MirroredRay ray =
+                mirror(scene,
+                       {some[i].origin + t * some[i].direction, some[i].direction, hits.error[i],
+                        hits.material[i], side},
+                       1, static_cast<std::uint32_t>(begin + i));
+            if (ray.share > 0) {
+                mirrored.push_back(ray);
             }
         }
     }
-    traced += views.size();
+    std::vector<MirroredNode> found;
+    traced += views.size() + follow_mirrored(scene, rays, tree, std::move(mirrored), found);
+    for (const MirroredNode& other : found) {
+        if (other.node != formats::kNone) {
+            seen.push_back({other.node, other.number, other.share});
+        }
+    }
     std::ranges::stable_sort(seen, {}, &SeenNode::node);
     return seen;
 }
@@ -69,8 +86,8 @@ std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceVi
         for (end = begin; end < seen.size() && seen[end].node == seen[begin].node; ++end) {
             const SurfaceView& view = views[seen[end].view];
             for (std::size_t k = 0; k < factor.size(); ++k) {
-                factor[k] +=
-                    std::numbers::inv_pi_v<float> * view.factor[k / bands] * view.weight[k % bands];
+                factor[k] += std::numbers::inv_pi_v<float> * view.factor[k / bands] *
+                             view.weight[k % bands] * seen[end].share;
             }
         }
         const std::vector<float> row = light.tree.rows().row(seen[begin].node);

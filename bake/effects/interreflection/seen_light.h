@@ -13,10 +13,12 @@ namespace opaline::bake {
 struct SeenNode {
     std::uint32_t node = 0;
     std::uint32_t view = 0;  ///< its number
+    float share = 1;         ///< of the view's light: less of what boundaries of media mirror
 };
 
 /// The node of each view's surface that is as large as what the view stands for, by nodes. Views
-/// that meet no surface that sends light have none. `traced` counts up.
+/// that meet no surface that sends light have none; those that meet a medium have others besides,
+/// for what its boundary mirrors. `traced` counts up.
 std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& rays,
                                 const BounceTree& tree, std::span<const SurfaceView> views,
                                 double solid_angle, std::uint64_t& traced);

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "bake/effects/interreflection/bounce_rays.h"
+#include "bake/effects/interreflection/mirrored_rays.h"
 #include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 
@@ -36,6 +37,7 @@ class TruePath {
     std::uint64_t follow(Receiver from, std::uint32_t number, std::uint32_t count) {
         Rgb weight = (1 / static_cast<float>(count)) * Rgb{1, 1, 1};
         rays_ = 0;
+        is_mirrored_ = false;
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
             auto u = random_of(number, depth);
             if (depth == 0) {
@@ -58,6 +60,7 @@ class TruePath {
             return rays_;
         }
         Receiver from;
+        is_mirrored_ = false;
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
             const auto u = random_of(number, depth);
             if (!(depth == 0 ? meet(along.origin, along.normal, u[2], from, weight)
@@ -88,11 +91,13 @@ class TruePath {
     // To the next surface, whose light counts. False: the path ends.
     bool step(Receiver& from, glm::vec2 u, float side_choice, Rgb& weight) {
         return from.normal != glm::vec3(0) &&
-               meet(from.origin, make_frame(from.normal).to_world(to_hemisphere(u.x, u.y)),
+               meet(from.origin,
+                    is_mirrored_ ? from.normal
+                                 : make_frame(from.normal).to_world(to_hemisphere(u.x, u.y)),
                     side_choice, from, weight);
     }
 
-    // The same along a ray; `next`: where it goes on from.
+    // The same along a ray; `next`: where it goes on from, along its normal where it is mirrored.
     bool meet(glm::vec3 origin, glm::vec3 direction, float side_choice, Receiver& next,
               Rgb& weight) {
         const BounceLight& light = *truth_.light;
@@ -106,18 +111,32 @@ class TruePath {
         const PacketHits hits = light.rays.closest(lanes, packet);
         ++rays_;
         const SeenSide side = hits.hit[0] != 0 ? side_of_hit(light.scene, hits, 0) : SeenSide{};
-        if (!side.is_seen || !sends_light(light.layouts[hits.material[0]])) {
+        if (hits.hit[0] == 0 && is_mirrored_) {
+            add_node(light.tree.sky_node(direction), weight);
+        }
+        is_mirrored_ = false;
+        if (!side.is_seen) {
             return false;
         }
         const RowLayout& layout = light.layouts[hits.material[0]];
+        const bool is_medium = light.scene.materials[hits.material[0]].medium.has_value();
+        if (!sends_light(layout) && !is_medium) {
+            return false;
+        }
         const SurfacePoint point =
             make_surface_point(light.scene, {hits.primitive[0], hits.first_index[0]},
                                {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
-        if (layout.translucent) {
-            add_scatterer(
+        if (is_medium) {
+            add_node(
                 light.tree.find(point.position, {hits.material[0], side.behind, side.normal}, 0),
                 weight);
-            return false;
+            const MirroredRay ray =
+                mirror(light.scene,
+                       {point.position, direction, hits.error[0], hits.material[0], side}, 1, 0);
+            next = {ray.origin, ray.direction};
+            weight = ray.share * weight;
+            is_mirrored_ = ray.share > 0;
+            return is_mirrored_;
         }
         weight = weight * eval_surface_albedo(light.scene, layout, point);
         const SurfaceSample sample = make_surface_sample(light.scene, point, 0);
@@ -159,7 +178,7 @@ class TruePath {
         }
     }
 
-    void add_scatterer(std::uint32_t node, Rgb weight) {
+    void add_node(std::uint32_t node, Rgb weight) {
         if (node == formats::kNone) {
             return;
         }
@@ -184,6 +203,7 @@ class TruePath {
     std::span<double> irradiance_;
     std::vector<double> from_sky_;
     std::uint64_t rays_ = 0;
+    bool is_mirrored_ = false;  // where the path goes next is known
 };
 
 }  // namespace

@@ -14,8 +14,6 @@
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/inspect_scene.h"
-#include "formats/opal/cubemap.h"
-#include "formats/opal/haar.h"
 #include "tests/bake/interreflection/bounce_support.h"
 
 namespace opaline::bake {
@@ -42,16 +40,9 @@ struct LitWorld {
         BakeOptions options;
         options.set(kBounceRays, bounce_rays);
         options.effects = {"direct", "interreflection"};
-        const auto black_inside = [&](std::uint32_t material, bool,
-                                      std::span<const Receiver> outside, std::span<const BodyPoint>,
-                                      std::uint32_t n) {
-            const RowLayout& own = layouts[material];
-            const std::size_t size = own.terms() * own.bands() * formats::cubemap_texels(n);
-            return std::vector<std::vector<float>>(outside.size(), std::vector<float>(size));
-        };
         std::uint64_t traced = 0;
-        light = find_bounce_light(
-            {bake, resolve_knobs(options).value(), {}, layouts, {}, black_inside}, traced);
+        light =
+            find_bounce_light({bake, resolve_knobs(options).value(), {}, layouts, {}, {}}, traced);
     }
 
     formats::Scene scene;
@@ -64,40 +55,6 @@ struct LitWorld {
     BakeInputs bake{all_effects(), scene, facts, rays, sky, sets};
     std::shared_ptr<const BounceLight> light;
 };
-
-// A medium that lets nothing out sends on what its boundary mirrors: F_ext of all light that
-// arrives, 0.0918 for an index of 1.5. The other plate is black.
-TEST(SiteLight, WhatTheBoundaryOfABlackMediumMirrorsGoesOn) {
-    formats::Scene plates = tests::make_plates(1, 0, 4);
-    plates.materials[0].base_color = {1, 1, 1};
-    plates.materials[0].medium = formats::Medium{};
-    plates.materials[0].medium->eta = 1.5f;
-    std::vector<RowLayout> layouts(2);
-    layouts[0].translucent = layouts[0].grey = true;
-    layouts[0].constant = layouts[1].constant = true;
-    const LitWorld world(std::move(plates), layouts, 64);
-    ASSERT_NE(world.light, nullptr);
-    const std::uint32_t n = world.light->cubemap_size;
-    std::vector<float> sky(formats::cubemap_texels(n));
-    const std::vector<double> face = formats::texel_solid_angles(n);
-    for (std::size_t t = 0; t < sky.size(); ++t) {
-        sky[t] = static_cast<float>(face[t % face.size()]);
-    }
-    formats::haar_forward_cube(std::span<float>(sky), n);
-    for (const float x : {0.1f, 0.5f, 0.8f}) {
-        const BounceTree& tree = world.light->tree;
-        const std::uint32_t node = tree.find({x, 0, 0.4f}, {0, false, {0, 1, 0}}, 0);
-        ASSERT_NE(node, formats::kNone);
-        double radiosity = 0;
-        for (std::size_t t = 0; t < sky.size(); ++t) {
-            radiosity +=
-                static_cast<double>(tree.rows().row(node)[t]) * static_cast<double>(sky[t]);
-        }
-        EXPECT_NEAR(
-            radiosity / (std::numbers::pi * static_cast<double>(tree.brightness(node).openness())),
-            0.0918, 0.0005);
-    }
-}
 
 // Most points of a room need no rays of their own. Row by row, against very many rays.
 TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {

@@ -1,0 +1,121 @@
+#include "bake/effects/interreflection/mirrored_rays.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/scattering/fresnel.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kTexels = std::size_t{6} * kBounceCubemap * kBounceCubemap;
+
+// Walls of a medium that sends out nothing of its own.
+struct BlackMedium {
+    explicit BlackMedium(std::vector<tests::Primitive> walls)
+        : scene(tests::make_scene(std::move(walls))) {
+        scene.materials[0].medium = formats::Medium{};
+        scene.materials[0].medium->eta = 1.5f;
+        rays = RayScene::build(scene, 1).value();
+    }
+
+    // E of a point under radiance 1 where `is_lit`.
+    template <class IsLit>
+    double irradiance(const Receiver& at, IsLit&& is_lit) const {
+        std::vector<NodeWeight> weights;
+        const BounceGather gathered =
+            weigh_bounces(scene, rays, tree, at, make_bounce_grid(4096), 1, weights);
+        EXPECT_GT(gathered.rays, 4096u);
+        std::vector<float> row(kTexels), light(kTexels);
+        add_node_rows(tree, weights, row);
+        const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
+        for (std::uint32_t t = 0; t < kTexels; ++t) {
+            const std::uint32_t own = t % static_cast<std::uint32_t>(face.size());
+            const formats::Vec3 d = formats::texel_direction(
+                kBounceCubemap, t / static_cast<std::uint32_t>(face.size()), own / kBounceCubemap,
+                own % kBounceCubemap);
+            light[t] = is_lit(glm::vec3(d.x, d.y, d.z)) ? static_cast<float>(face[own]) : 0;
+        }
+        formats::haar_forward_cube(std::span<float>(light), kBounceCubemap);
+        double sum = 0;
+        for (std::size_t t = 0; t < kTexels; ++t) {
+            sum += static_cast<double>(row[t]) * static_cast<double>(light[t]);
+        }
+        return sum;
+    }
+
+    formats::Scene scene;
+    RayScene rays = RayScene::build({}, 1).value();
+    BounceTree tree{{}, 1, kTexels};
+};
+
+// A plate that a point looks at from near by mirrors the whole even sky: F_ext of it, 0.0918 for an
+// index of 1.5.
+TEST(MirroredRays, ABlackPlateMirrorsTheShareOfAnEvenSkyThatIsItsMeanReflectance) {
+    const BlackMedium plate({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0})});
+    const double e = plate.irradiance({{0, 1e-3f, 0}, {0, -1, 0}}, [](glm::vec3) { return true; });
+    EXPECT_NEAR(e / std::numbers::pi, 0.0918, 0.001);
+}
+
+// A point on a floor before a wall that faces +x. What it receives of the wall stands at +x, and is
+//     int F(w.x) w.y dw
+// over the quarter of the sphere above the floor and before the wall: more than F_ext of the half
+// of the sky that is seen, since rays toward a floor graze.
+TEST(MirroredRays, AWallLightsTheFloorFromWhereAMirrorWouldAndMoreAtGrazingAngles) {
+    const BlackMedium wall({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80})});
+    const Receiver floor{{1e-3f, 0, 0}, {0, 1, 0}};
+    double expected = 0;
+    constexpr int kParts = 400;
+    for (int i = 0; i < kParts; ++i) {
+        for (int j = 0; j < kParts; ++j) {
+            const double up = (i + 0.5) / kParts;
+            const double azimuth = std::numbers::pi * (j + 0.5) / kParts;
+            expected += std::numbers::pi / (kParts * kParts) * up *
+                        fresnel_reflectance(std::sqrt(1 - up * up) * std::sin(azimuth), 1.5);
+        }
+    }
+    const auto before = [](glm::vec3 d) { return d.x > 0 && d.y > 0; };
+    const auto elsewhere = [&](glm::vec3 d) { return !before(d); };
+    EXPECT_NEAR(wall.irradiance(floor, before), expected, 0.01 * expected);
+    EXPECT_NEAR(wall.irradiance(floor, elsewhere), 0, 1e-3 * expected);
+    EXPECT_GT(expected, 1.3 * 0.0918 * std::numbers::pi / 2);
+}
+
+// In a corner a ray comes back the way it came, less by both reflectances.
+TEST(MirroredRays, TwoWallsOfACornerMirrorOneAfterTheOther) {
+    const BlackMedium corner({tests::make_quad({0, 0, -1}, {0, 0, 2}, {2, 0, 0}),
+                              tests::make_quad({0, 0, -1}, {0, 2, 0}, {0, 0, 2})});
+    const glm::vec3 way = glm::normalize(glm::vec3(-0.6f, -0.5f, 0.1f));
+    const MirroredRay first{{0.5f, 0.2f, 0}, way, 1, 7};
+    std::vector<MirroredNode> found;
+    EXPECT_EQ(follow_mirrored(corner.scene, corner.rays, corner.tree, {first}, found), 3u);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].node, corner.tree.sky_node({-way.x, -way.y, way.z}));
+    EXPECT_EQ(found[0].number, 7u);
+    EXPECT_NEAR(found[0].share,
+                fresnel_reflectance(static_cast<double>(-way.x), 1.5) *
+                    fresnel_reflectance(static_cast<double>(-way.y), 1.5),
+                1e-6);
+}
+
+TEST(MirroredRays, OpaqueSurfacesAndIndexMatchedMediaMirrorNothingHere) {
+    BlackMedium plate({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0})});
+    const RayEnd end{.direction = {0, -1, 0}, .side = {true, false, {0, 1, 0}, 1}};
+    EXPECT_NEAR(mirror(plate.scene, end, 1, 0).share, 0.04, 1e-6);
+    plate.scene.materials[0].medium->eta = 1;
+    EXPECT_EQ(mirror(plate.scene, end, 1, 0).share, 0);
+    plate.scene.materials[0].medium.reset();
+    EXPECT_EQ(mirror(plate.scene, end, 1, 0).share, 0);
+}
+
+}  // namespace
+}  // namespace opaline::bake
