@@ -1,5 +1,7 @@
 #include "bake/effects/interreflection/bounce_gather.h"
 
+#include <utility>
+
 #include "bake/effects/interreflection/mirrored_rays.h"
 
 namespace opaline::bake {
