@@ -54,9 +54,13 @@ SentShare find_sent_share(const formats::Scene& scene, std::uint32_t material,
                           (m.medium ? 1.0f : formats::diffuse_share(m));
     SentShare share;
     share.diffuse = std::min(1.0, static_cast<double>(largest));
-    share.all = m.medium || m.sheet
-                    ? share.diffuse
-                    : std::min(1.0, share.diffuse + static_cast<double>(most_mirrored(m)));
+    if (m.medium) {
+        // A boundary mirrors all light that grazes it.
+        share.all = m.medium->eta == 1 ? share.diffuse : 1;
+    } else {
+        share.all = m.sheet ? share.diffuse
+                            : std::min(1.0, share.diffuse + static_cast<double>(most_mirrored(m)));
+    }
     share.is_grey = shows_grey(scene, material) &&
                     ((!m.medium && !m.sheet) || has_grey_numbers(scene, material));
     return share;

@@ -8,7 +8,7 @@ namespace opaline::bake {
 
 /// Bounds on the share of light that leaves surfaces of a material again, in any band.
 struct SentShare {
-    double diffuse = 0;    ///< but for what an opaque one mirrors
+    double diffuse = 0;    ///< but for what its surface mirrors
     double all = 0;        ///< with that
     bool is_grey = false;  ///< all three bands alike
 };

@@ -97,5 +97,16 @@ TEST(RuleInterreflection, AMetalLightsADarkFloorAndStaysBelowItsBound) {
     EXPECT_LT(most, entry.bound);
 }
 
+// A boundary mirrors light that grazes it, however black what it bounds.
+TEST(RuleInterreflection, ABlackMediumLightsAFloorAndOneOfIndexOneDoesNot) {
+    formats::Scene scene = tests::make_plates(0.5f, 0.02f, 4);
+    EXPECT_FALSE(is_on(scene));
+    scene.materials[1].medium = formats::Medium{};
+    scene.materials[1].medium->eta = 1.5f;
+    EXPECT_TRUE(is_on(scene));
+    scene.materials[1].medium->eta = 1;
+    EXPECT_FALSE(is_on(scene));
+}
+
 }  // namespace
 }  // namespace opaline::bake
