@@ -55,7 +55,7 @@ draw() { # NAME SPP FILTER
 }
 draw many "$many" none
 error() { compare -metric RMSE "$1-$2.png" "many-$2.png" null: 2>&1 | perl -ne '/\(([\d.e-]+)\)/ and printf "%.1f %%", 100 * $1' || true; }
-seconds() { perl -ne 'if (/pixels, ([\d.]+) (ms|s|minutes?)/) { printf "%.1f", $1 * ($2 eq "ms" ? 1e-3 : $2 eq "s" ? 1 : 60) }' "$1.log"; }
+seconds() { perl -ne 'if (/pixels, ([\d.]+) (ms|s|min)/) { printf "%.1f", $1 * ($2 eq "ms" ? 1e-3 : $2 eq "s" ? 1 : 60) }' "$1.log"; }
 
 echo "| figure | error, glass | error, brass | seconds |"
 echo "|---|---:|---:|---:|"

@@ -17,10 +17,10 @@ terms=(--terms volume-single,volume-multiple)
 # FILE EXPRESSION: the time that the regular expression captures, in seconds.
 seconds() {
     perl -0ne "/$2/ or die qq($1: no match\n); my (\$x, \$u) = (\$1, \$2);
-        print \$x * (\$u eq 'ms' ? 1e-3 : \$u =~ /^minute/ ? 60 : 1)" "$1"
+        print \$x * (\$u eq 'ms' ? 1e-3 : \$u =~ /^min/ ? 60 : 1)" "$1"
 }
 "$opaline" bake "$scene" "${bake[@]}" -o baked.opal 2>bake.log
-baked=$(seconds bake.log 'nodes in volumes, ([\d.]+) (ms|s|minutes?)')
+baked=$(seconds bake.log 'nodes in volumes, ([\d.]+) (ms|s|min)')
 echo "| light | error | relight and march, s | Monte Carlo: paths a pixel | s | ratio | lights until the bake has paid |"
 echo "|---|---:|---:|---:|---:|---:|---:|"
 # LABEL LIGHT: a row. The camera stands at azimuth 30 degrees.
@@ -32,7 +32,7 @@ row() {
     local noise rms traced shown
     noise=$(perl -0ne '/standard error ([\d.e+-]+) %/ and print $1 / 100' truth.log)
     rms=$("$opaline" compare "baked-$label.exr" truth.exr --json | perl -0ne '/"relative_rmse": *([\d.e+-]+)/ and print $1')
-    traced=$(seconds truth.log 'pixels, ([\d.]+) (ms|s|minutes?)')
+    traced=$(seconds truth.log 'pixels, ([\d.]+) (ms|s|min)')
     shown=$(perl -0ne 'my $s = 0;
         $s += $1 * ($2 eq "ms" ? 1e-3 : 1) while /(?:light vector|dot products|draw per frame) +([\d.]+) (ms|s)\b/g;
         print $s' render.log)
