@@ -30,16 +30,16 @@ std::string small_file(const FileOptions& options = {}) {
     return read_bytes(folder / "a.vdb");
 }
 
-// Valid grids or an error with a message; nothing else, and soon. Whether it was read.
+// Valid grids or an error with a message, and nothing else: a reader that hangs is ended by its
+// limit of processor time, which is no fault of these files. Whether it was read.
 bool read_damaged(const std::filesystem::path& path, const std::string& bytes) {
     write_bytes(path, bytes);
-    const auto start = Clock::now();
     const auto result = read(path);
-    EXPECT_LT(Clock::now() - start, std::chrono::seconds(30));
     if (!result) {
         EXPECT_EQ(result.error().kind, formats::ErrorKind::bad_input);
         EXPECT_FALSE(result.error().diagnostics.at(0).fault.empty());
         EXPECT_FALSE(result.error().diagnostics.at(0).remedy.empty());
+        EXPECT_EQ(result.error().diagnostics.at(0).fault.find("s of computing"), std::string::npos);
         return false;
     }
     EXPECT_FALSE(result->empty());
