@@ -54,8 +54,11 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
         line += fmt::format("; the model errs by some {:.1f} %", 100 * result.knobs.model_error);
     }
     if (result.accuracy) {
-        line += fmt::format("; asked for {:g} %, expected {:.2f} %{}",
-                            100 * result.accuracy->target, 100 * result.accuracy->predicted,
+        line += fmt::format("; asked for {:g} %", 100 * result.accuracy->target);
+    }
+    // Of volumes nothing is expected: they are measured.
+    if (result.accuracy && result.error.receivers_checked > 0) {
+        line += fmt::format(", expected {:.2f} %{}", 100 * result.accuracy->predicted,
                             result.accuracy->model > 0 ? " besides the model" : "");
     }
     if (const auto& model = result.model_error) {

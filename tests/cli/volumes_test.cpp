@@ -153,6 +153,9 @@ TEST(VolumeFiles, AnExampleIsBakedFromDensityToPicture) {
               0);
     EXPECT_EQ(read_text(file), read_text(again));
     EXPECT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    const Outcome asked =
+        run_opaline({"bake", scene, "-o", again, "--error", "0.5", "--volume-walks", "8"});
+    EXPECT_THAT(asked.err, HasSubstr("asked for 50 %; volumes err by")) << "no receiver";
 
     // Nothing is absorbed, or nearly: under even light the cloud is as bright as the sky.
     const std::string picture = (folder / "p.exr").string();
