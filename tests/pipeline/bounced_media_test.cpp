@@ -65,15 +65,16 @@ tests::Scene make_slotted_block(std::size_t& of_slot) {
 BakeOptions walk_bake(bool separate) {
     BakeOptions options = bake_by(kWalked);
     options.separate_terms = separate;
+    options.effects = {"multiple", "single"};
     return options;
 }
 
-// Of what files show at receivers under white light, what comes from other surfaces, added up.
+// Of what files of some effects show at receivers under white light, what comes from other
+// surfaces, added up.
 double sum_bounced(const tests::Scene& scene, std::span<const ReferenceReceiver> receivers,
                    BakeOptions options) {
     double sum = 0;
-    for (const double sign : {1.0, -1.0}) {
-        options.effects = {"multiple", "single"};
+    for (const double sign : {-1.0, 1.0}) {
         if (sign > 0) {
             options.effects.emplace_back("interreflection");
         }
@@ -85,6 +86,28 @@ double sum_bounced(const tests::Scene& scene, std::span<const ReferenceReceiver>
             sum += sign * shown;
         }
     }
+    return sum;
+}
+
+// What path tracing has of that light at the same receivers.
+struct TracedSum {
+    double light = 0, error = 0;  // its standard error
+};
+TracedSum trace_bounced(const tests::Scene& scene, const ModelProbes& probes) {
+    EXPECT_EQ(probes.lights.at(0).name, "white");
+    ModelCheckOptions effort;
+    effort.simulated = TermSet::interreflection;
+    effort.max_events = 1500000;
+    const LightCheck truth = trace_model_truth(scene, probes, effort, {}).value().front();
+    EXPECT_GT(truth.pairs.size(), 100u);
+    TracedSum sum;
+    double variance = 0;
+    for (const ModelPair& pair : truth.pairs) {
+        sum.light += pair.truth;
+        variance += pair.variance;
+    }
+    sum.error = std::sqrt(variance);
+    EXPECT_LT(sum.error, 0.02 * sum.light);
     return sum;
 }
 
@@ -106,23 +129,12 @@ TEST(BouncedMedia, WallsOfASlotSendEachOtherHardlyMoreThanPathTracingFinds) {
     ModelProbes probes = choose_model_probes(scene, 0, 0, {}).value();
     probes.receivers = choose_in_slot(scene, of_slot);
     probes.lights.resize(1);
-    ASSERT_EQ(probes.lights[0].name, "white");
-    ModelCheckOptions effort;
-    effort.simulated = TermSet::interreflection;
-    effort.max_events = 1500000;
-    const LightCheck truth = trace_model_truth(scene, probes, effort, {}).value().front();
-    double traced = 0, variance = 0;
-    for (const ModelPair& pair : truth.pairs) {
-        traced += pair.truth;
-        variance += pair.variance;
-    }
+    const TracedSum traced = trace_bounced(scene, probes);
     const double sum = sum_bounced(scene, probes.receivers, walk_bake(false));
-    std::printf("slot: %.3f of the truth, of %zu places, error of the truth %.3f\n", sum / traced,
-                truth.pairs.size(), std::sqrt(variance) / traced);
-    EXPECT_GT(truth.pairs.size(), 100u);
-    EXPECT_LT(std::sqrt(variance), 0.02 * traced);
-    EXPECT_GT(sum, 0.9 * traced);
-    EXPECT_LT(sum, 1.6 * traced);
+    std::printf("slot: %.3f of the truth, whose error is %.3f\n", sum / traced.light,
+                traced.error / traced.light);
+    EXPECT_GT(sum, 0.9 * traced.light);
+    EXPECT_LT(sum, 1.6 * traced.light);
 }
 
 // A dielectric as black as ink on a floor: what the floor has of it is mirrored, most of it at
@@ -142,34 +154,14 @@ TEST(BouncedMedia, AFloorReceivesWhatABlackBodyOnItMirrors) {
         return r.primitive != 0 || std::max(std::abs(x.x), std::abs(x.z)) < 1.05f;
     });
     probes.lights.resize(1);
-    ModelCheckOptions effort;
-    effort.simulated = TermSet::interreflection;
-    effort.max_events = 1500000;
-    const LightCheck truth = trace_model_truth(scene, probes, effort, {}).value().front();
-    double traced = 0, variance = 0;
-    for (const ModelPair& pair : truth.pairs) {
-        traced += pair.truth;
-        variance += pair.variance;
-    }
+    const TracedSum traced = trace_bounced(scene, probes);
     BakeOptions options = tests::only({"direct", "specular"});
     options.quality = Quality::draft;
     options.set(kBounceRays, 256);
-    double sum = 0;
-    for (const double sign : {-1.0, 1.0}) {
-        const BakeResult baked = tests::bake_scene(scene, options);
-        const runtime::LightVector light =
-            tests::make_light("white", baked.asset.view().cubemap_size);
-        for (const double shown :
-             relight_receivers(baked.asset.view(), probes.receivers, {.vector = light})) {
-            sum += sign * shown;
-        }
-        options.effects.emplace_back("interreflection");
-    }
-    std::printf("floor: %.3f of the truth, of %zu places, error of the truth %.3f\n", sum / traced,
-                truth.pairs.size(), std::sqrt(variance) / traced);
-    EXPECT_GT(truth.pairs.size(), 100u);
-    EXPECT_LT(std::sqrt(variance), 0.02 * traced);
-    EXPECT_NEAR(sum / traced, 1, 0.03);
+    const double sum = sum_bounced(scene, probes.receivers, options);
+    std::printf("floor: %.3f of the truth, whose error is %.3f\n", sum / traced.light,
+                traced.error / traced.light);
+    EXPECT_NEAR(sum / traced.light, 1, 0.03);
 }
 
 // The effect that light scattered once may have to itself knows of the sky alone.

@@ -145,9 +145,7 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
     std::vector<MirroredNode> found;
     gathered.rays += follow_mirrored(scene, rays, tree, std::move(mirrored), found);
     for (const MirroredNode& seen : found) {
-        if (seen.node != formats::kNone) {
-            weights.push_back({seen.node, seen.share});
-        }
+        weights.push_back({seen.node, seen.share});
     }
     std::ranges::sort(weights, {}, &NodeWeight::node);
     std::size_t kept = 0;

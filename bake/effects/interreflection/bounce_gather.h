@@ -41,8 +41,8 @@ FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const Bounc
 /// node,
 ///     E = 1/N sum over N cells of cosine-distributed rays of B over the footprint of each.
 /// The ray decides whether a surface is seen and which; the mean of B over its cell has no noise of
-/// where in the cell it went. Rays that end on media go on as their boundaries mirror them, and read
-/// the scatterer or the texel of the sky where they end. Overwrites `weights`.
+/// where in the cell it went. Rays that end on media go on as their boundaries mirror them, and
+/// read the scatterer or the texel of the sky where they end. Overwrites `weights`.
 BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
                            const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
                            std::uint64_t seed, std::vector<NodeWeight>& weights,

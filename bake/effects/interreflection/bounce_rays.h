@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "bake/base/frame.h"
@@ -61,6 +62,22 @@ BounceGrid make_cut_grid(std::uint32_t count);
 inline glm::vec3 to_hemisphere(float u, float v) {
     const glm::vec2 d = to_disk(u, v);
     return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - glm::dot(d, d)))};
+}
+
+/// What up to sixteen rays of places of their own meet. Each has an `origin` [m] and a `direction`.
+template <class Ray>
+PacketHits closest_of(const RayScene& scene, std::span<const Ray> rays) {
+    RayPacket packet = rays_from({});
+    LaneMask lanes{};
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const glm::vec3 origin = rays[i].origin, direction = rays[i].direction;
+        packet.org_x[i] = origin.x, packet.org_y[i] = origin.y, packet.org_z[i] = origin.z;
+        packet.dir_x[i] = direction.x, packet.dir_y[i] = direction.y;
+        packet.dir_z[i] = direction.z;
+        packet.tfar[i] = std::numeric_limits<float>::infinity();
+        lanes[i] = -1;
+    }
+    return scene.closest(lanes, packet);
 }
 
 /// A hit, and the ray and its cell.

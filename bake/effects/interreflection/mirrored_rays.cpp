@@ -1,10 +1,10 @@
 #include "bake/effects/interreflection/mirrored_rays.h"
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <utility>
 
+#include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
@@ -32,28 +32,23 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
     // grazing angles.
     constexpr int kMostMirrors = 4;
     constexpr std::size_t kLanes = RayPacket::kSize;
+    const auto add = [&](std::uint32_t node, const MirroredRay& ray) {
+        if (node != formats::kNone) {
+            found.push_back({node, ray.share, ray.number});
+        }
+    };
     std::uint64_t traced = 0;
     for (int mirrors = 0; mirrors < kMostMirrors && !open.empty(); ++mirrors) {
         std::vector<MirroredRay> next;
         for (std::size_t begin = 0; begin < open.size(); begin += kLanes) {
             const std::span<const MirroredRay> some =
                 std::span(open).subspan(begin, std::min(kLanes, open.size() - begin));
-            RayPacket packet = rays_from({});
-            LaneMask lanes{};
-            for (std::size_t i = 0; i < some.size(); ++i) {
-                packet.org_x[i] = some[i].origin.x, packet.org_y[i] = some[i].origin.y;
-                packet.org_z[i] = some[i].origin.z;
-                packet.dir_x[i] = some[i].direction.x, packet.dir_y[i] = some[i].direction.y;
-                packet.dir_z[i] = some[i].direction.z;
-                packet.tfar[i] = std::numeric_limits<float>::infinity();
-                lanes[i] = -1;
-            }
             traced += some.size();
-            const PacketHits hits = rays.closest(lanes, packet);
+            const PacketHits hits = closest_of(rays, some);
             for (std::size_t i = 0; i < some.size(); ++i) {
                 const MirroredRay& ray = some[i];
                 if (hits.hit[i] == 0) {
-                    found.push_back({tree.sky_node(ray.direction), ray.share, ray.number});
+                    add(tree.sky_node(ray.direction), ray);
                     continue;
                 }
                 const RayEnd end{.position = ray.origin + hits.distance[i] * ray.direction,
@@ -64,11 +59,8 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                 if (!end.side.is_seen) {
                     continue;
                 }
-                const std::uint32_t node =
-                    tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0);
-                if (node != formats::kNone) {
-                    found.push_back({node, ray.share, ray.number});
-                }
+                add(tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0),
+                    ray);
                 const MirroredRay on = mirror(scene, end, ray.share, ray.number);
                 if (on.share > 0) {
                     next.push_back(on);

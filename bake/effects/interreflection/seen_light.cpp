@@ -1,12 +1,12 @@
 #include "bake/effects/interreflection/seen_light.h"
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/bounce_rays.h"
 #include "bake/effects/interreflection/mirrored_rays.h"
 #include "bake/effects/interreflection/scatterers.h"
 
@@ -23,17 +23,7 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
     for (std::size_t begin = 0; begin < views.size(); begin += kLanes) {
         const std::span<const SurfaceView> some =
             views.subspan(begin, std::min(kLanes, views.size() - begin));
-        RayPacket packet = rays_from({});
-        LaneMask lanes{};
-        for (std::size_t i = 0; i < some.size(); ++i) {
-            packet.org_x[i] = some[i].origin.x, packet.org_y[i] = some[i].origin.y;
-            packet.org_z[i] = some[i].origin.z;
-            packet.dir_x[i] = some[i].direction.x, packet.dir_y[i] = some[i].direction.y;
-            packet.dir_z[i] = some[i].direction.z;
-            packet.tfar[i] = std::numeric_limits<float>::infinity();
-            lanes[i] = -1;
-        }
-        const PacketHits hits = rays.closest(lanes, packet);
+        const PacketHits hits = closest_of(rays, some);
         for (std::size_t i = 0; i < some.size(); ++i) {
             const SeenSide side = hits.hit[i] != 0 ? side_of_hit(scene, hits, i) : SeenSide{};
             if (!side.is_seen) {
@@ -61,9 +51,7 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
     std::vector<MirroredNode> found;
     traced += views.size() + follow_mirrored(scene, rays, tree, std::move(mirrored), found);
     for (const MirroredNode& other : found) {
-        if (other.node != formats::kNone) {
-            seen.push_back({other.node, other.number, other.share});
-        }
+        seen.push_back({other.node, other.number, other.share});
     }
     std::ranges::stable_sort(seen, {}, &SeenNode::node);
     return seen;

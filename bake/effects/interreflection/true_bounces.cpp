@@ -119,7 +119,8 @@ class TruePath {
             return false;
         }
         const RowLayout& layout = light.layouts[hits.material[0]];
-        const bool is_medium = light.scene.materials[hits.material[0]].medium.has_value();
+        const formats::Material& material = light.scene.materials[hits.material[0]];
+        const bool is_medium = material.medium && !material.sheet;
         if (!sends_light(layout) && !is_medium) {
             return false;
         }
@@ -146,7 +147,7 @@ class TruePath {
         if (side.behind) {
             std::swap(front, back);
         }
-        const auto& sheet = light.scene.materials[hits.material[0]].sheet;
+        const auto& sheet = material.sheet;
         if (!sheet) {
             add_sky(front, weight);
             next = front;
