@@ -1,27 +1,72 @@
 #include "bake/effects/interreflection/mirrored_rays.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 
+#include "bake/base/frame.h"
+#include "bake/base/rng.h"
 #include "bake/effects/interreflection/bounce_rays.h"
+#include "bake/path_differentials/visible_normal.h"
+#include "bake/receivers/receiver_key.h"
 #include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 
+namespace {
+
+// Where a ray goes on, about the normal as third axis, and the share of its light that does.
+struct LobeSample {
+    glm::dvec3 direction{0, 0, 1};
+    double share = 0;
+};
+
+// What masking leaves: Lambda of [Heitz2014], masking is 1 / (1 + Lambda).
+double ggx_lambda(double cosine, double alpha) {
+    const double tangent2 = (1 - cosine * cosine) / (cosine * cosine);
+    return 0.5 * (std::sqrt(1 + alpha * alpha * tangent2) - 1);
+}
+
+// About one of the normals that the ray sees, drawn by u and v; the share is F G2 / G1.
+LobeSample sample_lobe(const formats::Medium& medium, const glm::dvec3& to_eye, float u, float v) {
+    const auto roughness = static_cast<double>(medium.roughness);
+    const double alpha = roughness * roughness;
+    const bool is_smooth = alpha < 1e-6;
+    const glm::dvec3 m =
+        is_smooth ? glm::dvec3(0, 0, 1)
+                  : sample_visible_normal(to_eye, {alpha, alpha}, DiskMap::concentric,
+                                          static_cast<double>(u), static_cast<double>(v))
+                        .m;
+    const double cosine = std::clamp(glm::dot(to_eye, m), 0.0, 1.0);
+    const glm::dvec3 onward = 2 * cosine * m - to_eye;
+    if (!(onward.z > 0)) {
+        return {};
+    }
+    const double masked = 1 + ggx_lambda(to_eye.z, alpha);
+    return {onward, masked / (masked + ggx_lambda(onward.z, alpha)) *
+                        fresnel_reflectance(cosine, static_cast<double>(medium.eta))};
+}
+
+}  // namespace
+
 MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
                    std::uint32_t number) {
+    constexpr float kGrazing = 1e-3f;
     const formats::Material& material = scene.materials[end.material];
     if (!material.medium || material.sheet || !end.side.is_seen) {
         return {};
     }
-    const auto cosine = static_cast<double>(std::clamp(end.side.cosine, 0.0f, 1.0f));
-    const double reflectance =
-        fresnel_reflectance(cosine, static_cast<double>(material.medium->eta));
     const glm::vec3 normal = end.side.normal;
+    const Frame frame = make_frame(normal);
+    const glm::dvec3 to_eye(-glm::dot(frame.u, end.direction), -glm::dot(frame.v, end.direction),
+                            std::max(-glm::dot(normal, end.direction), kGrazing));
+    const auto u =
+        random_uniform(0, RandomStage::bounce_rays, key_of({end.position, end.direction}));
+    const LobeSample lobe = sample_lobe(*material.medium, glm::normalize(to_eye), u[0], u[1]);
     return {.origin = end.position + end.error * normal,
-            .direction = glm::reflect(end.direction, normal),
-            .share = share * static_cast<float>(reflectance),
+            .direction = glm::normalize(frame.to_world(glm::vec3(lobe.direction))),
+            .share = share * static_cast<float>(lobe.share),
             .number = number};
 }
 

@@ -19,15 +19,17 @@ struct RayEnd {
     SeenSide side;
 };
 
-/// What the smooth boundary of a medium mirrors of a ray's light.
+/// What the boundary of a medium mirrors of a ray's light, as one direction of its lobe.
 struct MirroredRay {
     glm::vec3 origin{0}, direction{0};  ///< [m]; unit
     float share = 0;                    ///< of the first ray's; 0: nothing is mirrored
     std::uint32_t number = 0;           ///< of the first ray
 };
 
-/// By the Fresnel reflectance of its angle, at the facet; roughness changes neither. Materials
-/// other than media mirror nothing here: what they do is in their radiosity (eval_surface_albedo).
+/// By the Fresnel reflectance of its angle, about the facet's normal; of a rough boundary about one
+/// of the normals that the ray sees, GGX [Heitz2018], drawn by the ray's place and direction.
+/// Materials other than media mirror nothing here: what they do is in their radiosity
+/// (eval_surface_albedo).
 MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
                    std::uint32_t number);
 

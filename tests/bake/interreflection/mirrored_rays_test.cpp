@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/reference/rough_boundary.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -21,10 +22,11 @@ constexpr std::size_t kTexels = std::size_t{6} * kBounceCubemap * kBounceCubemap
 
 // Walls of a medium that sends out nothing of its own.
 struct BlackMedium {
-    explicit BlackMedium(std::vector<tests::Primitive> walls)
+    explicit BlackMedium(std::vector<tests::Primitive> walls, float roughness = 0)
         : scene(tests::make_scene(std::move(walls))) {
         scene.materials[0].medium = formats::Medium{};
         scene.materials[0].medium->eta = 1.5f;
+        scene.materials[0].medium->roughness = roughness;
         rays = RayScene::build(scene, 1).value();
     }
 
@@ -33,8 +35,8 @@ struct BlackMedium {
     double irradiance(const Receiver& at, IsLit&& is_lit) const {
         std::vector<NodeWeight> weights;
         const BounceGather gathered =
-            weigh_bounces(scene, rays, tree, at, make_bounce_grid(4096), 1, weights);
-        EXPECT_GT(gathered.rays, 4096u);
+            weigh_bounces(scene, rays, tree, at, make_bounce_grid(65536), 1, weights);
+        EXPECT_GT(gathered.rays, 65536u);
         std::vector<float> row(kTexels), light(kTexels);
         add_node_rows(tree, weights, row);
         const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
@@ -88,6 +90,51 @@ TEST(MirroredRays, AWallLightsTheFloorFromWhereAMirrorWouldAndMoreAtGrazingAngle
     EXPECT_NEAR(wall.irradiance(floor, before), expected, 0.01 * expected);
     EXPECT_NEAR(wall.irradiance(floor, elsewhere), 0, 1e-3 * expected);
     EXPECT_GT(expected, 1.3 * 0.0918 * std::numbers::pi / 2);
+}
+
+// The lobe of a rough boundary as path tracing has it: what a point before a wall receives of light
+// from one half of the sky is int int f(o, l) l.n (o.y) dl do over that half and the rays o.
+TEST(MirroredRays, ARoughWallMirrorsLessAtGrazingAnglesAndAroundTheMirrorsDirection) {
+    constexpr float kRoughness = 0.6f;
+    const BlackMedium wall({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80})}, kRoughness);
+    const Receiver floor{{1e-3f, 0, 0}, {0, 1, 0}};
+    constexpr int kParts = 56;
+    const auto sphere = [](int i, int j) {
+        const float up = 2 * (static_cast<float>(i) + 0.5f) / kParts - 1;
+        const float azimuth =
+            std::numbers::pi_v<float> * ((static_cast<float>(j) + 0.5f) / kParts - 0.5f);
+        const float across = std::sqrt(1 - up * up);
+        return glm::vec3(across * std::cos(azimuth), up, across * std::sin(azimuth));
+    };
+    constexpr double kSolid = 2 * std::numbers::pi / (kParts * kParts);
+    double up = 0, down = 0;  // light of the sky above and below the horizon, x > 0
+    for (int i = kParts / 2; i < kParts; ++i) {
+        for (int j = 0; j < kParts; ++j) {
+            // Rays go toward the wall, along -x: the eye is where they come from.
+            const glm::vec3 ray = sphere(i, j) * glm::vec3(-1, 1, 1);
+            const RoughBoundary boundary =
+                make_rough_boundary({1, 0, 0}, -ray, kRoughness * kRoughness, 1.5f);
+            for (int k = 0; k < kParts; ++k) {
+                for (int l = 0; l < kParts; ++l) {
+                    const glm::vec3 to_light = sphere(k, l);
+                    (to_light.y > 0 ? up : down) +=
+                        kSolid * kSolid * static_cast<double>(ray.y) *
+                        static_cast<double>(eval_rough_boundary(boundary, to_light).response);
+                }
+            }
+        }
+    }
+    EXPECT_GT(down, 0.02 * up);
+    const double from_above =
+        wall.irradiance(floor, [](glm::vec3 d) { return d.x > 0 && d.y > 0; });
+    const double from_below =
+        wall.irradiance(floor, [](glm::vec3 d) { return d.x > 0 && d.y < 0; });
+    EXPECT_NEAR(from_above, up, 0.02 * up);
+    EXPECT_NEAR(from_below, down, 0.08 * down);
+    const double smooth =
+        BlackMedium({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80})})
+            .irradiance(floor, [](glm::vec3) { return true; });
+    EXPECT_LT(from_above + from_below, 0.9 * smooth);
 }
 
 // In a corner a ray comes back the way it came, less by both reflectances.
