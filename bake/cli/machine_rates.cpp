@@ -13,7 +13,7 @@ MachineRates find_machine_rates() {
     if (const auto known = bake::read_rates(path, machine)) {
         return {*known, "read from " + path.string()};
     }
-    print_note("opaline: measuring this machine once, takes about 4 s");
+    print_note("opaline: measuring this machine once, takes about 10 s");
     const bake::Rates rates = bake::measure_rates(bake::all_effects(), machine.threads);
     if (path.empty()) {
         return {rates, "measured; neither XDG_CACHE_HOME nor HOME says where to keep it"};

@@ -62,26 +62,29 @@ void calibrate_volumes(const CalibrationBench& bench, Rates& rates) {
     const formats::Scene scene = make_calibration_volume();
     const auto sky = RayScene::build({}, 1);
     Knobs knobs;
-    knobs.cubemap_size = 16;
+    knobs.cubemap_size = 8;
     // One thing more at a time: rows, walks, and directions whose light joins them.
     const VolumeLayout once{.once_terms = 1, .spacing = 8};
     const VolumeLayout often{.once_terms = 1, .often_terms = 1, .spacing = 8, .walks = 1};
     const VolumeLayout rows{.once_terms = 25, .often_terms = 25, .spacing = 8, .walks = 1};
     const VolumeLayout walks{.once_terms = 1, .often_terms = 1, .spacing = 8, .walks = 8};
-    Knobs fine = knobs;
+    // Walks go to finer cells in a bake of reference quality, if its rows have as many.
+    Knobs coarse = knobs, fine = knobs;
+    coarse.cubemap_size = fine.cubemap_size = 16;
     fine.quality = Quality::reference;
     const double alone = measure_bake(scene, *sky, once, knobs);
     const double few_rows = measure_bake(scene, *sky, often, knobs);
     const double many_rows = measure_bake(scene, *sky, rows, knobs);
-    const double walked = measure_bake(scene, *sky, walks, knobs);
+    const double walked = measure_bake(scene, *sky, walks, coarse);
     const double finely = measure_bake(scene, *sky, walks, fine);
-    const VolumeWork few = count_volume_work(scene, {&walks, 1}, knobs).front();
+    const VolumeWork lit = count_volume_work(scene, {&once, 1}, knobs).front();
+    const VolumeWork few = count_volume_work(scene, {&walks, 1}, coarse).front();
     const VolumeWork many = count_volume_work(scene, {&walks, 1}, fine).front();
     const auto texels = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     rates.node_texel = std::max(0.0, many_rows - few_rows) /
-                       (few.nodes * (rows.often_terms - often.often_terms) * texels);
+                       (lit.nodes * (rows.often_terms - often.often_terms) * texels);
     rates.density_step =
-        std::max(0.0, alone - few.nodes * texels * rates.node_texel) / few.depth_steps;
+        std::max(0.0, alone - lit.nodes * texels * rates.node_texel) / lit.depth_steps;
     rates.scattered_cell =
         std::max(0.0, finely - walked) / (few.collisions * (many.walk_cells - few.walk_cells));
     rates.volume_flight = measure_flight(scene);
