@@ -5,7 +5,8 @@
 //   ... truth SCENE: a file of production against path tracing of all light.
 //   ... cost SCENE: seconds and rays of stages without and with interreflection.
 // SCENE: box (a room open to the front, with a block in it), detailed (the same, of checkers),
-// ball (dented, over a floor), statue; dense (the box of a mesh so fine that receivers read sites).
+// room (no block), ball (dented, over a floor), statue; dense (the box of a mesh so fine that
+// receivers read sites).
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -46,7 +47,9 @@ namespace {
 constexpr std::uint32_t kMap = kBounceCubemap;
 constexpr std::size_t kTexels = 6 * kMap * kMap;
 
-formats::Scene make_open_box(bool detailed, std::uint32_t n) {
+enum class Block { none, one };
+
+formats::Scene make_open_box(bool detailed, std::uint32_t n, Block has = Block::one) {
     using tests::make_quad;
     formats::Scene scene = tests::make_scene({
         make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, n),  // floor, up
@@ -55,10 +58,11 @@ formats::Scene make_open_box(bool detailed, std::uint32_t n) {
         make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, n),  // left, toward +x
         make_quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, n),  // right, toward -x
     });
-    auto block =
-        tests::transformed(tests::make_cube(6, false), glm::mat3(1), 0.15f, {0.4f, 0.16f, 0.4f});
-    scene.primitives.push_back(block);
-    scene.primitives.back().material = 0;
+    if (has == Block::one) {
+        scene.primitives.push_back(tests::transformed(tests::make_cube(6, false), glm::mat3(1),
+                                                      0.15f, {0.4f, 0.16f, 0.4f}));
+        scene.primitives.back().material = 0;
+    }
     scene.materials[0].base_color = {0.7f, 0.7f, 0.7f};
     if (detailed) {
         for (auto& p : scene.primitives) {
@@ -358,10 +362,11 @@ int main(int argc, char** argv) {
     using namespace opaline::bake;
     const std::string what = argc > 1 ? argv[1] : "", name = argc > 2 ? argv[2] : "";
     const bool is_known = name == "box" || name == "detailed" || name == "dense" ||
-                          name == "ball" || name == "statue";
+                          name == "room" || name == "ball" || name == "statue";
     const formats::Scene scene = name == "box"        ? make_open_box(false, 24)
                                  : name == "detailed" ? make_open_box(true, 24)
                                  : name == "dense"    ? make_open_box(false, 64)
+                                 : name == "room"     ? make_open_box(false, 24, Block::none)
                                  : name == "ball"     ? tests::make_dented_ball()
                                                       : example("statue");
     if (is_known && what == "gather" && argc > 3) {
