@@ -6,8 +6,8 @@
 namespace opaline::bake {
 using formats::Rgb;
 
-Rgb eval_surface_albedo(const formats::Scene& scene, const RowLayout& layout,
-                        const SurfacePoint& point, const TextureView* view) {
+SurfaceAlbedo eval_surface_albedo(const formats::Scene& scene, const RowLayout& layout,
+                                  const SurfacePoint& point, const TextureView* view) {
     const SurfacePlace place =
         surface_place(scene, point.primitive, point.first_index, point.barycentric);
     const glm::vec3 base = base_color(scene, place, view);
@@ -19,9 +19,9 @@ Rgb eval_surface_albedo(const formats::Scene& scene, const RowLayout& layout,
         const MeanReflectance mean = mean_reflectance(formats::make_gloss_surface(
             make_lobe_record(material.gloss), color, material.gloss.metallic * image.b,
             material.gloss.roughness * image.g));
-        return mean.diffuse * color + mean.mirrored;
+        return {mean.diffuse * color, mean.mirrored};
     }
-    return color;
+    return {color};
 }
 
 }  // namespace opaline::bake

@@ -12,11 +12,11 @@ bool is_grey(formats::Rgb c) {
     return c.r == c.g && c.g == c.b;
 }
 
-// Whether all that its rows are multiplied by is grey, and what an opaque one mirrors.
+// Whether all that its rows are multiplied by is grey, and what its lobe mirrors.
 bool shows_grey(const formats::Scene& scene, std::uint32_t material) {
     const formats::Material& m = scene.materials[material];
     bool grey = is_grey(m.base_color) && m.base_color_image == formats::kNone && !m.marble &&
-                (m.medium || m.sheet || m.gloss.is_diffuse() || is_grey(m.gloss.specular_color));
+                (m.medium || m.gloss.is_diffuse() || is_grey(m.gloss.specular_color));
     for (const formats::Primitive& p : scene.primitives) {
         grey = grey && (p.material != material ||
                         std::ranges::all_of(p.color, [](formats::Rgb c) { return is_grey(c); }));
@@ -24,8 +24,8 @@ bool shows_grey(const formats::Scene& scene, std::uint32_t material) {
     return grey;
 }
 
-// Bound on what the lobe of an opaque material mirrors of even light, whatever its textures say: at
-// the ends of its roughness and colour.
+// Bound on what the lobe of an opaque or thin-walled material mirrors of even light, whatever its
+// textures say: at the ends of its roughness and colour.
 float most_mirrored(const formats::Material& material) {
     const formats::GlossRecord record = make_lobe_record(material.gloss);
     float most = 0;
@@ -58,8 +58,7 @@ SentShare find_sent_share(const formats::Scene& scene, std::uint32_t material,
         // A boundary mirrors all light that grazes it.
         share.all = m.medium->eta == 1 ? share.diffuse : 1;
     } else {
-        share.all = m.sheet ? share.diffuse
-                            : std::min(1.0, share.diffuse + static_cast<double>(most_mirrored(m)));
+        share.all = std::min(1.0, share.diffuse + static_cast<double>(most_mirrored(m)));
     }
     share.is_grey = shows_grey(scene, material) &&
                     ((!m.medium && !m.sheet) || has_grey_numbers(scene, material));

@@ -70,6 +70,16 @@ bool is_seen(const formats::Material& material, bool behind, float along_normal)
     return material.double_sided && !material.medium ? along_normal < 0 : !behind;
 }
 
+// What a row is multiplied by for the light that arrives, of which a lobe mirrors its share. Rows
+// of a thin wall hold shares of the light of both sides, which are taken to be alike.
+float share_of_rows(const formats::Material& material) {
+    if (!material.sheet) {
+        return 1;
+    }
+    const float both = formats::luminance(material.sheet->reflect + material.sheet->transmit);
+    return both > 0 ? 1 / both : 0;
+}
+
 }  // namespace
 
 double seen_surfaces_bytes(const ShownSurfaces& shown, std::size_t bands, std::size_t cells) {
@@ -143,8 +153,9 @@ void add_seen_surface(const SeenSurfaces& seen, const MetSurface& met, glm::vec3
     if (!is_seen(material, met.behind, glm::dot(direction, primitive.normal[vertex]))) {
         return;
     }
-    const formats::Rgb color =
+    const SurfaceAlbedo albedo =
         eval_surface_albedo(seen.scene, seen.layouts[primitive.material], point);
+    const formats::Rgb color = albedo.diffuse + share_of_rows(material) * albedo.mirrored;
     const std::array<float, 3> tint = seen.bands == 1
                                           ? std::array<float, 3>{formats::luminance(color), 0, 0}
                                           : std::array<float, 3>{color.r, color.g, color.b};

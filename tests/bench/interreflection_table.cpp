@@ -164,7 +164,7 @@ Exact exact_light(const World& w, std::size_t count) {
     std::vector<std::vector<NodeWeight>> arrive(n);
     tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
         const Row r = env_row(w, d, e.points[i].outside);
-        const float rho = formats::luminance(e.points[i].albedo);
+        const float rho = formats::luminance(e.points[i].albedo.sum());
         for (std::size_t k = 0; k < kTexels; ++k)
             emitted[i * kTexels + k] = rho * r[k];
         weigh_bounces(w.scene, w.rays, *e.tree, e.points[i].outside, grid, 77, arrive[i],
@@ -177,7 +177,7 @@ Exact exact_light(const World& w, std::size_t count) {
         tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
             Row r(kTexels);
             add_node_rows(*e.tree, arrive[i], r);
-            const float rho = formats::luminance(e.points[i].albedo);
+            const float rho = formats::luminance(e.points[i].albedo.sum());
             for (std::size_t k = 0; k < kTexels; ++k) {
                 last[i * kTexels + k] = rho * r[k];
                 sum[i * kTexels + k] += rho * r[k];

@@ -67,7 +67,7 @@ void weigh_through(const Field& field, const BounceTree& tree, const LookThrough
             by_band[b] += double{weight[b]};
         }
     }
-    const std::array<float, 3> albedo{s.albedo.r, s.albedo.g, s.albedo.b};
+    const std::array<float, 3> albedo{s.albedo.diffuse.r, s.albedo.diffuse.g, s.albedo.diffuse.b};
     for (std::size_t b = 0; b < by_band.size() && sum > 0; ++b) {
         arrivals.of_through[b] = albedo[b] * static_cast<float>(by_band[b] / sum);
     }

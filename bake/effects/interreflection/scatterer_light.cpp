@@ -75,14 +75,14 @@ float openness_of(const Field& field, std::span<const float> row) {
                       0.0f, 1.0f);
 }
 
-// B of an opaque or thin-walled surface: rho E.
+// B of an opaque or thin-walled surface: rho E. What a lobe mirrors crosses no thin wall.
 std::uint64_t light_surface(Field& field, const DirectionSet& directions, std::size_t i) {
     Scatterer& s = field.scatterers[i];
     std::vector<float> row(kTexels), emitted(field.light.row_size());
-    formats::Rgb reflect = s.albedo, transmit{0, 0, 0};
+    formats::Rgb reflect = s.albedo.sum(), transmit{0, 0, 0};
     if (const auto& sheet = field.material(i).sheet) {
-        reflect = s.albedo * sheet->reflect;
-        transmit = s.albedo * sheet->transmit;
+        reflect = s.albedo.diffuse * sheet->reflect + s.albedo.mirrored;
+        transmit = s.albedo.diffuse * sheet->transmit;
     }
     field.light.reflect[i] = to_bands(reflect, field.light.bands);
     field.light.transmit[i] = to_bands(transmit, field.light.bands);
@@ -165,7 +165,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
     for (std::size_t m = 0; m < members.size(); ++m) {
         const std::size_t i = members[m];
         Scatterer& s = field.scatterers[i];
-        const BandColour colour = to_bands(s.albedo, bands);
+        const BandColour colour = to_bands(s.albedo.diffuse, bands);
         find_leaving(m, colour);
         if (!crossing.empty()) {
             add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), crossing[m],

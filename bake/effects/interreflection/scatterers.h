@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/plan/effect.h"
+#include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_points.h"
 
 namespace opaline::bake {
@@ -18,8 +19,8 @@ struct Scatterer {
     Receiver outside;     ///< where light of that side is gathered
     Receiver beyond;      ///< the same of the other side; used of thin-walled surfaces
     BodyPoint inside;
-    float openness = 0;            ///< share of the light of an even sky that reaches it, in [0, 1]
-    formats::Rgb albedo{1, 1, 1};  ///< eval_surface_albedo, with textures: mean over its cell
+    float openness = 0;    ///< share of the light of an even sky that reaches it, in [0, 1]
+    SurfaceAlbedo albedo;  ///< with textures: mean over its cell
 };
 
 /// A hit of a ray as a scatterer sees it, or nothing: the back of a surface that has none.

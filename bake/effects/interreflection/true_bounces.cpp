@@ -139,7 +139,7 @@ class TruePath {
             is_mirrored_ = ray.share > 0;
             return is_mirrored_;
         }
-        weight = weight * eval_surface_albedo(light.scene, layout, point);
+        const SurfaceAlbedo albedo = eval_surface_albedo(light.scene, layout, point);
         const SurfaceSample sample = make_surface_sample(light.scene, point, 0);
         const glm::vec3 lift = sample.receiver.origin - point.position;
         Receiver front = sample.receiver,
@@ -149,21 +149,24 @@ class TruePath {
         }
         const auto& sheet = material.sheet;
         if (!sheet) {
+            weight = weight * albedo.sum();
             add_sky(front, weight);
             next = front;
             return true;
         }
-        add_sky(front, weight * sheet->reflect);
-        add_sky(back, weight * sheet->transmit);
-        const float reflect = largest(sheet->reflect), transmit = largest(sheet->transmit);
-        if (!(reflect + transmit > 0)) {
+        const Rgb reflect = albedo.diffuse * sheet->reflect + albedo.mirrored,
+                  transmit = albedo.diffuse * sheet->transmit;
+        add_sky(front, weight * reflect);
+        add_sky(back, weight * transmit);
+        const float reflected = largest(reflect), all = reflected + largest(transmit);
+        if (!(all > 0)) {
             return false;
         }
-        const float share = reflect / (reflect + transmit);
+        const float share = reflected / all;
         const bool is_reflected = side_choice < share;
         next = is_reflected ? front : back;
-        weight = is_reflected ? (1 / share) * (weight * sheet->reflect)
-                              : (1 / (1 - share)) * (weight * sheet->transmit);
+        weight = is_reflected ? (1 / share) * (weight * reflect)
+                              : (1 / (1 - share)) * (weight * transmit);
         return true;
     }
 

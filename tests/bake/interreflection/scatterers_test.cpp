@@ -43,7 +43,7 @@ TEST(Scatterers, LieWhereReceiversLook) {
         EXPECT_NEAR(s.position.y, s.material == 1 ? 0.5 : 0, 1e-6);
         EXPECT_EQ(s.normal.y, s.material == 1 ? -1 : 1) << "the sides that face each other";
         EXPECT_FALSE(s.behind);
-        EXPECT_NEAR(s.albedo.g, 0.5, 1e-6);
+        EXPECT_NEAR(s.albedo.diffuse.g, 0.5, 1e-6);
         EXPECT_GT(s.outside.origin.y * s.normal.y, s.position.y * s.normal.y);
     }
     EXPECT_NEAR(static_cast<double>(upper), 128, 30);

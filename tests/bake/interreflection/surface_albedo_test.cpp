@@ -19,7 +19,7 @@ TEST(SurfaceAlbedo, ColoursOfMaterialVerticesAndImageMultiply) {
     p.texcoord.assign(p.position.size(), {0.5f, 0.5f});
     scene.images.push_back({.width = 1, .height = 1, .rgba = {255, 255, 0, 255}});
     scene.materials[0].base_color_image = 0;
-    const formats::Rgb c = eval_surface_albedo(scene, {}, middle_of(scene));
+    const formats::Rgb c = eval_surface_albedo(scene, {}, middle_of(scene)).sum();
     EXPECT_NEAR(c.r, 0.25, 1e-4);
     EXPECT_NEAR(c.g, 0.5, 1e-4);
     EXPECT_NEAR(c.b, 0, 1e-4);
@@ -33,7 +33,7 @@ TEST(SurfaceAlbedo, ASmoothMetalSendsTheMeanOfItsFresnelTerm) {
     scene.materials[0].gloss.metallic = 1;
     scene.materials[0].gloss.roughness = 0;
     const formats::Rgb color = scene.materials[0].base_color;
-    const formats::Rgb sent = eval_surface_albedo(scene, layout, middle_of(scene));
+    const formats::Rgb sent = eval_surface_albedo(scene, layout, middle_of(scene)).sum();
     EXPECT_NEAR(sent.g, color.g + (1 - color.g) / 21, 0.005);
     EXPECT_NEAR(sent.r, color.r + (1 - color.r) / 21, 0.005);
 }
@@ -46,7 +46,8 @@ TEST(SurfaceAlbedo, AWhiteMetalOfAnyRoughnessSendsAllLight) {
     scene.materials[0].gloss.metallic = 1;
     for (const float roughness : {0.1f, 0.5f, 1.0f}) {
         scene.materials[0].gloss.roughness = roughness;
-        EXPECT_NEAR(eval_surface_albedo(scene, layout, middle_of(scene)).g, 1, 0.01) << roughness;
+        EXPECT_NEAR(eval_surface_albedo(scene, layout, middle_of(scene)).sum().g, 1, 0.01)
+            << roughness;
     }
 }
 
@@ -57,10 +58,10 @@ TEST(SurfaceAlbedo, ADielectricSendsItsDiffuseLobeAndWhatItMirrors) {
     scene.materials[0].base_color = {0, 0, 0};
     scene.materials[0].gloss = {.specular = 1};
     scene.materials[0].gloss.roughness = 0;
-    const float mirrored = eval_surface_albedo(scene, layout, middle_of(scene)).g;
+    const float mirrored = eval_surface_albedo(scene, layout, middle_of(scene)).sum().g;
     EXPECT_NEAR(mirrored, 0.04 + 0.96 / 21, 0.005);
     scene.materials[0].base_color = {0.5f, 0.5f, 0.5f};
-    const float all = eval_surface_albedo(scene, layout, middle_of(scene)).g;
+    const float all = eval_surface_albedo(scene, layout, middle_of(scene)).sum().g;
     EXPECT_GT(all, mirrored + 0.4f);
     EXPECT_LT(all, mirrored + 0.5f);
 }
