@@ -237,6 +237,22 @@ TEST(InspectScene, ConstantColoursAreToldFromOthers) {
     EXPECT_EQ(inspect_scene(scene).material[0].color_contrast, 1);
 }
 
+// On the side where the light arrives: black paper with a lobe is not black for others.
+TEST(InspectScene, ThinWallsSendOnWhatTheirLobesMirrorInItsColour) {
+    auto scene = make_scene({make_sphere(1)});
+    formats::Material& paper = scene.materials[0];
+    paper.base_color = {0.5f, 0.5f, 0.5f};
+    paper.sheet = formats::Sheet{.reflect = {0.3f, 0.3f, 0.3f}, .transmit = {0.2f, 0.2f, 0.2f}};
+    EXPECT_NEAR(inspect_scene(scene).material[0].surroundings.brightest, 0.25, 1e-6);
+    EXPECT_TRUE(inspect_scene(scene).material[0].surroundings.is_grey);
+    paper.gloss.specular = 1;
+    paper.gloss.roughness = 0.3f;
+    EXPECT_GT(inspect_scene(scene).material[0].surroundings.brightest, 0.32);
+    EXPECT_TRUE(inspect_scene(scene).material[0].surroundings.is_grey);
+    paper.gloss.specular_color = {1, 0.5f, 0};
+    EXPECT_FALSE(inspect_scene(scene).material[0].surroundings.is_grey);
+}
+
 TEST(InspectScene, MediaAreGreyOnlyIfAllThreeBandsAreExactlyAlike) {
     auto scene = make_scene({make_sphere(1)});
     formats::Medium& medium = scene.materials[0].medium.emplace();
