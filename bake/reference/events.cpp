@@ -12,8 +12,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
-
 bool count_event(const PathSpace& space, Path& path) {
     return ++path.events <= space.options.max_depth;
 }
@@ -29,7 +27,7 @@ bool goes_on_filtering(const PathSpace& space, Path& path) {
 // The direction at cosine `cosine` to the unit vector n, with azimuth 2 pi u.
 glm::vec3 direction_about(glm::vec3 n, float cosine, float u) {
     const float sine = std::sqrt(std::max(0.0f, (1 - cosine) * (1 + cosine)));
-    const float phi = 2 * kPi * u;
+    const float phi = 2 * std::numbers::pi_v<float> * u;
     const glm::vec3 d =
         make_frame(n).to_world({sine * std::cos(phi), sine * std::sin(phi), cosine});
     // One Newton step renormalises, so that rounding does not accumulate over a long walk.
@@ -78,7 +76,8 @@ bool reflect_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
     }
     const glm::vec2 uv = random.next_pair();
     gather_light(space, path, point.from, true, random, [&](glm::vec3 d) {
-        return even_response(is_above(point, d) ? glm::dot(d, point.normal) / kPi : 0.0f);
+        return even_response(
+            is_above(point, d) ? glm::dot(d, point.normal) / std::numbers::pi_v<float> : 0.0f);
     });
     const float cosine = std::sqrt(1 - uv.x);
     path.direction = direction_about(point.normal, cosine, uv.y);
@@ -86,7 +85,7 @@ bool reflect_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
         path.filter->scatter_diffusely(point.normal, path.direction);
     }
     path.origin = point.from;
-    path.pdf = cosine / kPi;
+    path.pdf = cosine / std::numbers::pi_v<float>;
     return is_above(point, path.direction) && survives(path, kAtSurfaces, random);
 }
 

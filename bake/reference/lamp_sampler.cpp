@@ -44,15 +44,15 @@ float mean_brightness(const formats::Scene& scene, std::uint32_t primitive,
     if (material.emission_image == formats::kNone || p.texcoord.empty()) {
         return whole;
     }
-    constexpr int kSteps = 4;
+    constexpr int steps = 4;
     float mean = 0;
-    for (int i = 0; i < kSteps * kSteps; ++i) {
-        const float u = (static_cast<float>(i % kSteps) + 0.5f) / kSteps;
-        const float v = (static_cast<float>(i) + 0.5f) / (kSteps * kSteps);
+    for (int i = 0; i < steps * steps; ++i) {
+        const float u = (static_cast<float>(i % steps) + 0.5f) / steps;
+        const float v = (static_cast<float>(i) + 0.5f) / (steps * steps);
         mean +=
             sum_of(emission_at(scene, primitive, corners_of(p, triangle), place_in_triangle(u, v)));
     }
-    mean /= kSteps * kSteps;
+    mean /= steps * steps;
     constexpr float kLeastShare = 1.0f / 16;
     return std::max(mean, kLeastShare * whole);
 }

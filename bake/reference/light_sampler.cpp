@@ -10,7 +10,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr double kUniformShare = 1.0 / 16;
 
 formats::Vec3 to_vec3(glm::vec3 v) {
@@ -23,7 +22,7 @@ float brightness(formats::Rgb c) {
 
 // Cells are uniform in longitude and in y: each has the same solid angle.
 glm::vec3 cell_direction(float column, float row, float columns, float rows) {
-    const float y = 1 - 2 * row / rows, phi = 2 * kPi * column / columns;
+    const float y = 1 - 2 * row / rows, phi = 2 * std::numbers::pi_v<float> * column / columns;
     const float r = std::sqrt(std::max(0.0f, 1 - y * y));
     return {r * std::cos(phi), y, r * std::sin(phi)};
 }
@@ -61,7 +60,7 @@ std::vector<float> cell_weights(const formats::Environment& map, std::uint32_t c
 }
 
 std::pair<std::size_t, std::size_t> cell_of(const LightSampler& light, glm::vec3 d) {
-    const float turn = std::atan2(d.z, d.x) / (2 * kPi);
+    const float turn = std::atan2(d.z, d.x) / (2 * std::numbers::pi_v<float>);
     const float x = (turn - std::floor(turn)) * static_cast<float>(light.columns);
     const float y = 0.5f * (1 - d.y) * static_cast<float>(light.rows);
     const auto column = std::min(static_cast<std::uint32_t>(std::max(x, 0.0f)), light.columns - 1);
@@ -85,7 +84,7 @@ glm::vec3 sample_disc(const formats::DistantDisc& disc, float u, float v) {
     const auto sine = static_cast<float>(std::sqrt(drop * (2 - drop)));
     const glm::vec3 other = std::abs(axis.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     const glm::vec3 t = glm::normalize(glm::cross(other, axis)), b = glm::cross(axis, t);
-    const float phi = 2 * kPi * v;
+    const float phi = 2 * std::numbers::pi_v<float> * v;
     return glm::normalize(static_cast<float>(1 - drop) * axis +
                           sine * (std::cos(phi) * t + std::sin(phi) * b));
 }

@@ -9,7 +9,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kLeastCosine = 1e-4f;  // where it divides: path_differentials/bounded_change.h
 
 float square(float x) {
@@ -194,7 +193,7 @@ void PathFilter::add_diffuse_cell(const Pending& event) {
     }
     // Of the sphere pi step^2 / cosine, by its chord; wider than high where it is seen flat.
     const float cosine = std::max(glm::dot(normal, drawn), 1e-3f);
-    const float side = filtering_->step * std::sqrt(kPi / cosine);
+    const float side = filtering_->step * std::sqrt(std::numbers::pi_v<float> / cosine);
     const float chord = std::min(side, std::numbers::sqrt2_v<float>);
     const Frame frame = make_frame(drawn);
     Cell cell{{chord * frame.u, chord * frame.v}};
@@ -254,7 +253,7 @@ void PathFilter::add_facet_cell(const Pending& event) {
     // Normals are uniform on the cap of height 1 + w.z. A cell of it: differences between points at
     // 1 / sqrt 3 of its half, where two points have the second moments of the whole.
     constexpr float kRoot = std::numbers::sqrt3_v<float>;
-    const float side = filtering_->step * std::sqrt(2 * kPi * (1 + w.z));
+    const float side = filtering_->step * std::sqrt(2 * std::numbers::pi_v<float> * (1 + w.z));
     const float half = std::min(0.5f * side / kRoot, 1.0f);
     const Frame around = make_frame(c);
     const Float4 along_u{half, -half, 0, 0}, along_v{0, 0, half, -half};

@@ -9,13 +9,11 @@ namespace {
 
 using formats::PhaseFunction;
 
-constexpr double kPi = std::numbers::pi;
-
 // 2 pi int_0^pi exp(-(angle / rms)^2) sin(angle) dangle, by Simpson's rule where the integrand
 // exceeds 1e-28.
 double integrate_gaussian(double rms_angle) {
     constexpr int kIntervals = 2000;
-    const double end = std::min(kPi, 8 * rms_angle), step = end / kIntervals;
+    const double end = std::min(std::numbers::pi, 8 * rms_angle), step = end / kIntervals;
     const auto f = [&](int i) {
         const double angle = i * step, x = angle / rms_angle;
         return std::exp(-x * x) * std::sin(angle);
@@ -24,7 +22,7 @@ double integrate_gaussian(double rms_angle) {
     for (int i = 1; i < kIntervals; ++i) {
         sum += (i % 2 == 1 ? 4 : 2) * f(i);
     }
-    return 2 * kPi * sum * step / 3;
+    return 2 * std::numbers::pi * sum * step / 3;
 }
 
 }  // namespace
@@ -38,7 +36,8 @@ PhaseSampler make_phase_sampler(const PhaseFunction& function) {
         for (std::size_t i = 1; i < function.cosine.size(); ++i) {
             const double width = double{function.cosine[i]} - double{function.cosine[i - 1]};
             const double mean = 0.5 * (double{function.value[i]} + double{function.value[i - 1]});
-            sampler.cumulative.push_back(sampler.cumulative.back() + 2 * kPi * width * mean);
+            sampler.cumulative.push_back(sampler.cumulative.back() +
+                                         2 * std::numbers::pi * width * mean);
         }
         sampler.scale = 1 / sampler.cumulative.back();
         for (double& c : sampler.cumulative) {
@@ -51,7 +50,7 @@ PhaseSampler make_phase_sampler(const PhaseFunction& function) {
 float pdf_phase(const PhaseSampler& sampler, float cosine) {
     const PhaseFunction& phase = sampler.function;
     const double c = std::clamp(double{cosine}, -1.0, 1.0);
-    double p = 1 / (4 * kPi);
+    double p = 1 / (4 * std::numbers::pi);
     switch (phase.type) {
         case PhaseFunction::Type::isotropic:
             break;
@@ -108,7 +107,7 @@ GaussianCandidate propose_gaussian(double rms_angle, double u) {
     // angle * exp(-(angle / rms)^2) is sampled by inversion; sin(angle) / angle is the probability
     // of acceptance.
     const double angle = rms_angle * std::sqrt(-std::log(1 - u));
-    if (angle >= kPi) {
+    if (angle >= std::numbers::pi) {
         return {};
     }
     return {angle, angle > 0 ? std::sin(angle) / angle : 1};
@@ -122,7 +121,7 @@ float invert_table(const PhaseSampler& sampler, double u) {
     const double a = double{phase.cosine[i - 1]}, width = double{phase.cosine[i]} - a;
     const double p = double{phase.value[i - 1]}, q = double{phase.value[i]};
     // The fraction x of the interval with p x + (q - p) x^2 / 2 = area; stable for p = q and p = 0.
-    const double area = (u - cumulative[i - 1]) / (2 * kPi * sampler.scale * width);
+    const double area = (u - cumulative[i - 1]) / (2 * std::numbers::pi * sampler.scale * width);
     const double root = std::sqrt(std::max(0.0, p * p + 2 * (q - p) * area));
     const double x = p + root > 0 ? 2 * area / (p + root) : 0.0;
     return static_cast<float>(std::clamp(a + width * std::clamp(x, 0.0, 1.0), -1.0, 1.0));
