@@ -114,7 +114,7 @@ cosine() { perl -e 'printf "%.6f", cos($ARGV[0] * 3.14159265358979 / 180)' "$1";
 depth() { perl -e 'printf "%.6f", $ARGV[0] * $ARGV[1]' "$rest" "$1"; }
 
 # Figure 8: shares of the light by order, thickness and angle: the one-dimensional model, fitted at each angle, against adding
-# and doubling. RMS errors of three distributions of droplets: opaline_slab_accuracy prints them (tests/bench).
+# and doubling. RMS errors of three distributions of droplets: opaline_bench slab-accuracy prints them (tests/bench).
 angles=(0 30 60 80)
 for a in "${!angles[@]}"; do
     for h in 3 5 8 13 20 30 50 80 130 200 300 500 800; do

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Figure 4 of [Suykens2001] remade: a room by particles, with the elements that their footprints join.
 # Writes examples/images/elements.png and prints how many elements each surface has.
-# The tool is a bench: cmake --preset bench && cmake --build --preset bench --target opaline_radiosity_figure
+# The tool is a bench: cmake --preset bench && cmake --build --preset bench --target opaline_bench
 # usage: elements.sh OPALINE_RADIOSITY_FIGURE [PARTICLES]
 set -euo pipefail
 [ $# -eq 1 ] || [ $# -eq 2 ] || { echo "usage: elements.sh OPALINE_RADIOSITY_FIGURE [PARTICLES]" >&2; exit 2; }

@@ -1,30 +1,44 @@
 #!/usr/bin/env bash
-# The whole suite under the address and undefined-behaviour sanitizers, then the tests that use several
-# threads under the thread sanitizer; ends with a summary. Hours on 2 cores: no part of what every change
-# must pass. Arguments go to both ctest runs.
+# What CI leaves out: benchmarks and every header compiled by itself; all tests of the g++ release build; the whole suite
+# under the address and undefined-behaviour sanitizers; what uses several threads under the thread sanitizer. Ends with a
+# summary. Hours on 2 cores. Parts can be named: deep.sh [release] [asan] [tsan].
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
+parts=("$@")
+[ $# -gt 0 ] || parts=(release asan tsan)
 
 # run_suite PRESET CTEST-ARGUMENTS...: builds and tests; leaves build-PRESET/test-results.xml.
 run_suite() {
     local preset=$1
     shift
-    cmake --preset "$preset" >/dev/null &&
+    cmake --preset "$preset" -DOPALINE_BUILD_BENCH=ON >/dev/null &&
         cmake --build --preset "$preset" &&
         ctest --preset "$preset" -j "$(nproc)" --timeout 7200 --no-tests=error \
             --output-junit "$root/build-$preset/test-results.xml" --test-output-size-passed 1000000 "$@"
 }
 
+# Whole bakes with several threads, the loops of all stages, and the runtime called from many threads.
+run_threads() {
+    cmake --preset tsan >/dev/null && cmake --build --preset tsan --target base_test pipeline_test runtime_test runtime_picture_test reference_test &&
+        TSAN_OPTIONS="suppressions=$root/tests/thread_sanitizer.supp ignore_noninstrumented_modules=1 halt_on_error=1" \
+            bash -euc 'for program in "$@"; do "build-tsan/tests/$program" --gtest_filter="*Thread*:Loops.*:ReferenceFurnace.*"; done' \
+            _ bake/base/base_test pipeline/pipeline_test runtime/runtime_test runtime/picture/runtime_picture_test bake/reference/reference_test
+}
+
 bash .ci/setup.sh
 failed=0
-# Compiling every header by itself finds nothing more under a sanitizer.
-run_suite asan -LE build "$@" || failed=1
-# Programs whose cases run together, in one process, count by the program's name.
-run_suite tsan -R 'Thread|example_test|reference_test' "$@" || failed=1
-
-for preset in asan tsan; do
-    echo "== $preset =="
-    python3 tests/summarise_results.py "build-$preset/test-results.xml" || failed=1
+for part in "${parts[@]}"; do
+    case $part in
+        release) run_suite release || failed=1 ;;
+        asan) run_suite asan -LE build || failed=1 ;;  # compiling headers by themselves finds nothing more there
+        tsan) run_threads || failed=1 ;;
+        *) echo "usage: deep.sh [release] [asan] [tsan]" >&2; exit 2 ;;
+    esac
+done
+for part in "${parts[@]}"; do
+    [ -e "build-$part/test-results.xml" ] || continue
+    echo "== $part =="
+    python3 tests/summarise_results.py "build-$part/test-results.xml" || failed=1
 done
 exit "$failed"

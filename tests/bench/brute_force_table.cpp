@@ -1,7 +1,7 @@
 // What the hierarchy and the coefficients left out cost at production quality: rows of some
 // receivers as the bake makes them, against the sum over all its samples with all coefficients and
 // sixteen bits. Single scattering is gathered by rays in both. Prints a row of RESULTS.md's table:
-// opaline_brute_force SCENE MEDIA.json; minutes.
+// opaline_bench brute-force-table SCENE MEDIA.json; minutes.
 #include <array>
 #include <cstdio>
 #include <span>
@@ -19,6 +19,7 @@
 #include "formats/gltf/import_gltf.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/read_media.h"
+#include "tests/bench/bench.h"
 #include "tests/support/effects.h"
 
 namespace opaline::bake {
@@ -108,9 +109,9 @@ int compare(const std::string& file, const std::string& media_file) {
 }  // namespace
 }  // namespace opaline::bake
 
-int main(int argc, char** argv) {
+int opaline::tests::brute_force_table(int argc, char** argv) {
     if (argc != 3) {
-        std::fprintf(stderr, "usage: opaline_brute_force SCENE MEDIA.json\n");
+        std::fprintf(stderr, "usage: opaline_bench brute-force-table SCENE MEDIA.json\n");
         return 2;
     }
     return opaline::bake::compare(argv[1], argv[2]);

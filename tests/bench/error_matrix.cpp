@@ -3,7 +3,7 @@
 // absorption in percent of the diagonal, albedo, mean cosine, index 1.4. Prints what the check
 // states and what four times as many other vertices say, without those that the check leaves out;
 // then what it states of suns. Rows of RESULTS.md's tables:
-// opaline_error_matrix SCENE LENGTH,ALBEDO,G...; a minute a cell. With `above` before the scene the
+// opaline_bench error-matrix SCENE LENGTH,ALBEDO,G...; a minute a cell. With `above` before the scene the
 // other vertices are left out where what is stated is at most 3 %, 5 % from a mean cosine of .9 on.
 #include <cstdio>
 #include <span>
@@ -15,6 +15,7 @@
 #include "bake/accuracy/model_truth.h"
 #include "bake/pipeline/pipeline.h"
 #include "runtime/light_vector.h"
+#include "tests/bench/bench.h"
 #include "tests/bench/grey_cells.h"
 #include "tests/support/effects.h"
 
@@ -78,12 +79,13 @@ void print_cell(const formats::Scene& scene, bool above_target_alone) {
 }  // namespace
 }  // namespace opaline::bake
 
-int main(int count, char** argument) {
+int opaline::tests::error_matrix(int count, char** argument) {
     std::span<char*> cells = std::span(argument, static_cast<std::size_t>(count)).subspan(1);
     const bool above_target_alone = !cells.empty() && std::string_view(cells[0]) == "above";
     cells = cells.subspan(above_target_alone ? 1 : 0);
-    return opaline::bake::print_grey_cells("opaline_error_matrix", cells,
+    return opaline::bake::print_grey_cells("opaline_bench error-matrix", cells,
                                            [&](const opaline::formats::Scene& scene) {
                                                opaline::bake::print_cell(scene, above_target_alone);
                                            });
+    return 0;
 }

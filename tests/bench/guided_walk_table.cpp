@@ -8,7 +8,7 @@
 // ("light"). Prints variance times collisions of plain walks over that of guided ones: above 1,
 // guiding pays.
 //
-// usage: opaline_guided_walk_table [WALKS]     default 400000. Fixed seeds.
+// usage: opaline_bench guided-walk-table [WALKS]     default 400000. Fixed seeds.
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -18,6 +18,7 @@
 #include "bake/path_integral/turn.h"
 #include "bake/scattering/phase.h"
 #include "tests/bake/path_integral/path_support.h"
+#include "tests/bench/bench.h"
 
 namespace {
 
@@ -153,7 +154,7 @@ void print_rows(const char* name, const Medium& medium, Query query, int walks) 
 
 }  // namespace
 
-int main(int count, char** arguments) {
+int opaline::tests::guided_walk_table(int count, char** arguments) {
     const int walks = count > 1 ? std::atoi(arguments[1]) : 400000;
     std::puts(
         "| body, sun | path, 0.1 | 0.25 | turn, 0.1 | 0.25 | light, 0.1 | 0.25 | sigmas apart |");
@@ -178,4 +179,5 @@ int main(int count, char** arguments) {
     query.reach = 2;
     query.depth = 6 * 0.5 * std::sqrt(2 * pi) * std::exp(-0.08) * query.albedo;
     print_rows("blob", Blob{6, 0.5, query.albedo, 2}, query, walks);
+    return 0;
 }

@@ -1,5 +1,5 @@
 // Bounced light of the bake against an exact final gather, against path tracing, and its cost.
-//   opaline_interreflection_table gather SCENE RAYS: errors of 160 receivers against 16384 rays
+//   opaline_bench interreflection-table gather SCENE RAYS: errors of 160 receivers against 16384 rays
 //     that read the nearest of as many scatterers as there are, whose light is found with 256 rays
 //     each; of each error, the part that rays of other seeds share.
 //   ... truth SCENE: a file of production against path tracing of all light.
@@ -35,6 +35,7 @@
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "runtime/light_vector.h"
+#include "tests/bench/bench.h"
 #include "tests/bench/visible_footprint.h"
 #include "tests/support/bake.h"
 #include "tests/support/effects.h"
@@ -357,7 +358,7 @@ void check(const formats::Scene& scene, Quality quality) {
 }  // namespace
 }  // namespace opaline::bake
 
-int main(int argc, char** argv) {
+int opaline::tests::interreflection_table(int argc, char** argv) {
     using namespace opaline;
     using namespace opaline::bake;
     const std::string what = argc > 1 ? argv[1] : "", name = argc > 2 ? argv[2] : "";
@@ -381,7 +382,7 @@ int main(int argc, char** argv) {
         }
     } else {
         std::fprintf(
-            stderr, "opaline_interreflection_table gather SCENE RAYS | truth SCENE | cost SCENE\n");
+            stderr, "opaline_bench interreflection-table gather SCENE RAYS | truth SCENE | cost SCENE\n");
         return 2;
     }
     return 0;

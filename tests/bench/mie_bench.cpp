@@ -90,5 +90,3 @@ void forward_peak(benchmark::State& state) {
 BENCHMARK(forward_peak)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-
-BENCHMARK_MAIN();

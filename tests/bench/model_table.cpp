@@ -1,6 +1,6 @@
 // How far the model is from the Monte Carlo reference, as the table of RESULTS.md states it: light
 // that files of two to six seeds show over light that there is, along the normals of some receivers
-// side by side, with the standard error of both. `opaline_model_table [ETA[,ALBEDO] [K
+// side by side, with the standard error of both. `opaline_bench model-table [ETA[,ALBEDO] [K
 // [COLUMN...]]]` prints it as markdown, of one index or row, with K rows by view (0: as many as the
 // quality takes) and of some columns, counted from 0, where they are given; about 40 minutes in
 // all.
@@ -19,6 +19,7 @@
 #include "bake/reference/reference_receivers.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"
+#include "tests/bench/bench.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
 #include "tests/support/sheets.h"
@@ -195,7 +196,7 @@ void print_table(std::span<const float> indices, std::span<const float> albedos,
 }  // namespace
 }  // namespace opaline::bake
 
-int main(int count, char** argument) {
+int opaline::tests::model_table(int count, char** argument) {
     constexpr std::array<float, 3> kIndices{1.0f, 1.3f, 1.5f}, kAlbedos{0.5f, 0.9f, 0.99f};
     float index = 0, albedo = 0;
     const int given = count > 1 ? std::sscanf(argument[1], "%f,%f", &index, &albedo) : 0;
@@ -208,4 +209,5 @@ int main(int count, char** argument) {
         given > 0 ? std::span<const float>(&index, 1) : std::span<const float>(kIndices),
         given > 1 ? std::span<const float>(&albedo, 1) : std::span<const float>(kAlbedos), views,
         columns);
+    return 0;
 }

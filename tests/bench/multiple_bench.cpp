@@ -106,5 +106,3 @@ BENCHMARK(shared_against_own_rays)
 
 }  // namespace
 }  // namespace opaline::bake
-
-BENCHMARK_MAIN();

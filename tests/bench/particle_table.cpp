@@ -12,6 +12,7 @@
 #include "bake/emitters/receiver_light.h"
 #include "bake/emitters/trace_particles.h"
 #include "tests/bake/emitters/lamp_scenes.h"
+#include "tests/bench/bench.h"
 
 namespace opaline::bake {
 namespace {
@@ -136,7 +137,8 @@ void print_caustic() {
 }  // namespace
 }  // namespace opaline::bake
 
-int main() {
+int opaline::tests::particle_table(int, char**) {
     opaline::bake::print_furnace();
     opaline::bake::print_caustic();
+    return 0;
 }

@@ -138,5 +138,3 @@ void make_table(benchmark::State& state) {
 BENCHMARK(make_table)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-
-BENCHMARK_MAIN();

@@ -130,5 +130,3 @@ OPALINE_SCENE(ball_ink, ball,
 
 }  // namespace
 }  // namespace opaline::bake
-
-BENCHMARK_MAIN();

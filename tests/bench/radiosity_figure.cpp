@@ -1,7 +1,7 @@
 // Figure 4 of [Suykens2001] remade: a room with a table, a diffuse ball and one of rough glass, lit
 // by a lamp below the ceiling and a spot, by particles alone. Three panels: elements as footprints
 // join them, with their edges; what receivers gather; elements of footprints that no gradient
-// limits. usage: opaline_radiosity_figure OUT.png [PARTICLES]; prints groups of each surface, with
+// limits. usage: opaline_bench radiosity-figure OUT.png [PARTICLES]; prints groups of each surface, with
 // and without the limit by the gradient.
 #include <algorithm>
 #include <array>
@@ -24,6 +24,7 @@
 #include "formats/image/png.h"
 #include "formats/image/srgb.h"
 #include "tests/bake/emitters/lamp_scenes.h"
+#include "tests/bench/bench.h"
 
 namespace opaline::bake {
 namespace {
@@ -259,12 +260,13 @@ void make_figure(const std::string& path, std::uint32_t particles) {
 }  // namespace
 }  // namespace opaline::bake
 
-int main(int argc, char** argv) {
+int opaline::tests::radiosity_figure(int argc, char** argv) {
     if (argc < 2 || argc > 3) {
-        std::fprintf(stderr, "usage: opaline_radiosity_figure OUT.png [PARTICLES]\n");
+        std::fprintf(stderr, "usage: opaline_bench radiosity-figure OUT.png [PARTICLES]\n");
         return 2;
     }
     opaline::bake::make_figure(
         argv[1],
         argc > 2 ? static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 10)) : 400000);
+    return 0;
 }

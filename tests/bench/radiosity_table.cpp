@@ -16,6 +16,7 @@
 #include "runtime/clouds/mip_pyramid.h"
 #include "runtime/clouds/plane_gather.h"
 #include "runtime/clouds/radiosity.h"
+#include "tests/bench/bench.h"
 
 namespace opaline::runtime {
 namespace {
@@ -269,7 +270,8 @@ void print_passes() {
 }  // namespace
 }  // namespace opaline::runtime
 
-int main() {
+int opaline::tests::radiosity_table(int, char**) {
     opaline::runtime::print_errors();
     opaline::runtime::print_passes();
+    return 0;
 }

@@ -2,7 +2,7 @@
 // 1 / (variance of one path * seconds per path), relative to the squared mean: what decides how
 // long a given standard error takes. Compare within one run.
 //
-//   opaline_bench_reference --benchmark_min_time=2
+//   opaline_bench speed --benchmark_min_time=2
 //
 // What was tried, as ratios of efficiency (after / before, two busy cores):
 // - Russian roulette below a throughput of 1 instead of 0.1: 1.05 (dense, white), 1.65 (dense,
@@ -150,5 +150,3 @@ BENCHMARK(OneChannelByItself)->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace opaline::bake
-
-BENCHMARK_MAIN();

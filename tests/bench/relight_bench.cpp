@@ -97,5 +97,3 @@ void on_gl(benchmark::State& state) {
 BENCHMARK(on_gl)->UseManualTime()->Unit(benchmark::kMillisecond);
 
 }  // namespace
-
-BENCHMARK_MAIN();

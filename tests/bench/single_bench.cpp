@@ -81,5 +81,3 @@ BENCHMARK(maps_against_rays)->Unit(benchmark::kMillisecond)->MinTime(5);
 
 }  // namespace
 }  // namespace opaline::bake
-
-BENCHMARK_MAIN();

@@ -1,6 +1,6 @@
 // How near models and tables of a cloud layer are to adding and doubling, as RESULTS.md states it:
 // shares of the flux by order and angle for three droplet distributions, and radiance by direction.
-// `opaline_slab_accuracy` prints both as markdown; about three minutes.
+// `opaline_bench slab-accuracy` prints both as markdown; about three minutes.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,6 +20,7 @@
 #include "bake/slab/slab_table.h"
 #include "bake/slab/solve_radiance.h"
 #include "bake/slab/solve_slab.h"
+#include "tests/bench/bench.h"
 
 namespace opaline::bake {
 namespace {
@@ -226,11 +227,12 @@ void print_radiance(const Cloud& cloud) {
 }  // namespace
 }  // namespace opaline::bake
 
-int main() {
+int opaline::tests::slab_accuracy(int, char**) {
     for (const opaline::bake::Cloud& cloud : opaline::bake::kClouds) {
         opaline::bake::print_shares(cloud);
     }
     for (const opaline::bake::Cloud& cloud : opaline::bake::kClouds) {
         opaline::bake::print_radiance(cloud);
     }
+    return 0;
 }

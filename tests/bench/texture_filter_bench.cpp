@@ -4,7 +4,7 @@
 // varies. Pixels count whose mirrored ray meets the board. Lobes as wide as a power S around the
 // mirrored direction: alpha = sqrt(2 / (4 S + 2)).
 //
-//   opaline_bench_texture_filter
+//   opaline_bench texture-filter
 //
 // Prints, over 8 seeds, RMSE at 4 samples a pixel, of that its noise and bias; how often lower it
 // is than without a filter, on the mean and on the worst seed; and the same at equal time: than
@@ -25,6 +25,7 @@
 
 #include "bake/reference/path_filter.h"
 #include "bake/reference/reference_image.h"
+#include "tests/bench/bench.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
@@ -315,7 +316,7 @@ void compare(const char* name, double exponent, View view) {
 }  // namespace
 }  // namespace opaline::bake
 
-int main() {
+int opaline::tests::texture_filter(int, char**) {
     using opaline::bake::View;
     opaline::bake::compare("S = 40", 40, View::ball);
     opaline::bake::compare("S = 400", 400, View::ball);
@@ -323,4 +324,5 @@ int main() {
     opaline::bake::compare("S = 400, two mirrors", 400, View::two_mirrors);
     opaline::bake::compare("S = 40, glass", 40, View::glass);
     opaline::bake::compare("S = 400, glass", 400, View::glass);
+    return 0;
 }

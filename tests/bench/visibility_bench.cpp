@@ -175,5 +175,3 @@ BENCHMARK(two_threads_against_one)->Unit(benchmark::kMillisecond)->MinTime(5);
 
 }  // namespace
 }  // namespace opaline::bake
-
-BENCHMARK_MAIN();

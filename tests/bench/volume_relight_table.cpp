@@ -1,6 +1,6 @@
 // What relighting the volumes of a file takes a host, through opaline.h:
 //
-//   opaline_volume_relight FILE.opal [LIGHT]     LIGHT: a built-in name or a file
+//   opaline_bench volume-relight FILE.opal [LIGHT]     LIGHT: a built-in name or a file
 //
 // Prints a table as markdown, milliseconds of wall time and of all threads together: even light,
 // one sun, five suns in different directions, the map of LIGHT. Medians of 15 and the fastest.
@@ -15,6 +15,7 @@
 #include "bake/environment/builtin_environment.h"
 #include "formats/opal/file_bytes.h"
 #include "runtime/opaline.hpp"
+#include "tests/bench/bench.h"
 
 namespace {
 
@@ -47,9 +48,9 @@ void print_row(const char* name, const opaline_asset* asset, const opaline_light
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int opaline::tests::volume_relight(int argc, char** argv) {
     if (argc < 2 || argc > 3) {
-        std::fputs("usage: opaline_volume_relight FILE.opal [LIGHT]\n", stderr);
+        std::fputs("usage: opaline_bench volume-relight FILE.opal [LIGHT]\n", stderr);
         return 2;
     }
     const auto bytes = formats::FileBytes::open(argv[1]);
@@ -100,4 +101,5 @@ int main(int argc, char** argv) {
                                          map->environment.height));
         print("map");
     }
+    return 0;
 }

@@ -1,6 +1,6 @@
 // What balls save random walks (bake/effects/multiple/walks/README.md, "Balls"): events, rays and
 // seconds of processor time a walk without and with them, in turns. Rows of RESULTS.md's table:
-// opaline_walk_table SCENE LENGTH,ALBEDO,G... with the media of opaline_error_matrix.
+// opaline_bench walk-table SCENE LENGTH,ALBEDO,G... with the media of opaline_bench error-matrix.
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -11,6 +11,7 @@
 #include "bake/effects/multiple/walks/walk.h"
 #include "bake/effects/multiple/walks/walk_balls.h"
 #include "bake/receivers/surface_samples.h"
+#include "tests/bench/bench.h"
 #include "tests/bench/grey_cells.h"
 
 namespace opaline::bake {
@@ -90,8 +91,9 @@ void print_cell(const formats::Scene& scene) {
 }  // namespace
 }  // namespace opaline::bake
 
-int main(int count, char** argument) {
+int opaline::tests::walk_table(int count, char** argument) {
     return opaline::bake::print_grey_cells(
-        "opaline_walk_table", std::span(argument, static_cast<std::size_t>(count)).subspan(1),
+        "opaline_bench walk-table", std::span(argument, static_cast<std::size_t>(count)).subspan(1),
         opaline::bake::print_cell);
+    return 0;
 }

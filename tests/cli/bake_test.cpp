@@ -199,22 +199,6 @@ TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     EXPECT_EQ(read_text(small.path("a0.opal")), read_text(small.path("a1.opal")));
 }
 
-TEST(Bake, AnyNumberOfThreadsWritesTheSameBytes) {
-    const TemporaryFolder folder;
-    write_file(folder / "sheet.glb", wavy_sheet(24).glb());
-    std::string first;
-    for (const std::string threads : {"1", "2", "5"}) {
-        const std::string out = folder / (threads + ".opal");
-        const Outcome bake = run_opaline(
-            {"bake", folder / "sheet.glb", "-o", out, "--quality", "draft", "--threads", threads});
-        ASSERT_EQ(bake.exit_code, 0) << bake.err;
-        const std::string bytes = read_text(out);
-        first = first.empty() ? bytes : first;
-        EXPECT_EQ(bytes, first) << threads;
-    }
-    EXPECT_GT(first.size(), 10000u);
-}
-
 TEST(Bake, SameBytesWhereverTheSceneLies) {
     SmallScene here, there;
     EXPECT_EQ(read_text(here.baked()), read_text(there.baked()));

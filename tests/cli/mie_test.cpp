@@ -125,13 +125,6 @@ TEST(Mie, CsvHoldsTheNumbersOfTheJson) {
     check(droplets, print_json("mie", droplets).at("wavelengths").at(0), 2);
 }
 
-TEST(Mie, ThreadsChangeNoDigit) {
-    const auto run = [](const char* threads) {
-        return run_opaline(join({"mie", "--threads", threads}, kSmallDroplets)).out;
-    };
-    EXPECT_EQ(run("1"), run("5"));
-}
-
 TEST(Mie, EqualDropletsAreAWarning) {
     const Outcome outcome =
         run_opaline({"mie", "--effective-radius", "0.5", "--gamma", "1000", "--size-step", "1"});

@@ -58,28 +58,6 @@ TEST(Reference, TableAgreesWithTheBakeWhereBothMeanTheSameLight) {
     EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
 }
 
-TEST(Reference, SameBytesForAnyNumberOfThreads) {
-    SmallScene small;
-    std::string first;
-    for (const char* threads : {"1", "2", "5"}) {
-        const std::string out = small.path(std::string("t") + threads + ".csv");
-        ASSERT_EQ(run_opaline({"reference", small.scene(), "--light", "studio", "--receivers", "4",
-                               "--spp", "100", "--threads", threads, "-o", out})
-                      .exit_code,
-                  0);
-        if (first.empty()) {
-            first = read_text(out);
-        }
-        EXPECT_EQ(read_text(out), first);
-    }
-    const std::string other = small.path("other.csv");
-    ASSERT_EQ(run_opaline({"reference", small.scene(), "--light", "studio", "--receivers", "4",
-                           "--spp", "100", "--seed", "1", "-o", other})
-                  .exit_code,
-              0);
-    EXPECT_NE(read_text(other), first);
-}
-
 TEST(Reference, PictureComesWithItsVariance) {
     SmallScene small;
     const std::string out = small.path("out.exr");

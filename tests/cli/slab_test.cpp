@@ -134,20 +134,6 @@ TEST(Slab, RefractingBoundariesReflectAsPublished) {
                 4 * number(walk.at("by_order").at(0), "reflectance_standard_error"));
 }
 
-TEST(Slab, PhotonsDoNotDependOnThreads) {
-    const Arguments layer = {"slab",     "--optical-depth", "5",         "--g",   "0.85",
-                             "--method", "monte-carlo",     "--photons", "20000", "--threads"};
-    const auto run = [&](const char* threads) {
-        Arguments all = layer;
-        all.emplace_back(threads);
-        return run_opaline(all).out;
-    };
-    const std::string one = run("1");
-    EXPECT_THAT(one, HasSubstr("reflectance_standard_error"));
-    EXPECT_EQ(run("2"), one);
-    EXPECT_EQ(run("5"), one);
-}
-
 TEST(Slab, TablesOfThePhaseFunctionAreAnInput) {
     const TemporaryFolder folder;
     const std::string path = folder / "even.txt";

@@ -70,18 +70,6 @@ TEST(Between, TargetIsMissedWhereTheMeshIsTooCoarseForIt) {
                 Contains(Field(&formats::Diagnostic::remedy, HasSubstr("more vertices"))));
 }
 
-TEST(Between, ReportDoesNotDependOnTheNumberOfThreads) {
-    BakeOptions options = tests::small_bake();
-    const auto scene = tests::make_ball_on_floor(tests::make_grey_medium(4, 0.02f));
-    options.threads = 1;
-    const BakeResult one = tests::bake_scene(scene, options);
-    options.threads = 5;
-    const BakeResult five = tests::bake_scene(scene, options);
-    EXPECT_EQ(one.error.between.rms_relative, five.error.between.rms_relative);
-    EXPECT_EQ(one.error.rms_relative, five.error.rms_relative);
-    EXPECT_EQ(one.asset.provenance, five.asset.provenance);
-}
-
 // The luminance that the check takes for the file's is what the runtime interpolates, for a distant
 // eye along the normal: terms that depend on the view are seen from there at each vertex.
 TEST(Between, MixOfVerticesIsTheRuntimes) {

@@ -92,11 +92,6 @@ TEST(EmitterBake, FileOfASceneWithoutLampsIsAsItWas) {
     }));
 }
 
-TEST(EmitterBake, ThreadsDoNotMatter) {
-    const BakeResult one = bake_lamps(lamp_scene(), {}, 1), many = bake_lamps(lamp_scene(), {}, 3);
-    EXPECT_EQ(one.asset.emitters.value, many.asset.emitters.value);
-}
-
 formats::Scene lamp_and_wax() {
     formats::Scene scene = lamp_scene();
     scene.primitives.push_back(tests::make_sphere(1, 0.1f, {0, 0.3f, 0}));

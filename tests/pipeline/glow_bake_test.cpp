@@ -127,18 +127,5 @@ TEST(GlowBake, FireLightsSurfacesAsTheReferenceSaysAndIsSwitchedByItsName) {
     EXPECT_NEAR(stated->rms_relative, sum.rms_relative(), 0.03);
 }
 
-TEST(GlowBake, LightOfFireOnSurfacesIsTheSameForAnyNumberOfThreads) {
-    Scene scene = fire_above_a_floor();
-    scene.primitives.pop_back();
-    bake::BakeOptions options = small_bake();
-    options.quality = bake::Quality::draft;
-    options.threads = 1;
-    const bake::BakeResult one = bake_scene(scene, options);
-    options.threads = 3;
-    const bake::BakeResult three = bake_scene(scene, options);
-    ASSERT_FALSE(one.asset.emitters.value.empty());
-    EXPECT_EQ(one.asset.emitters.value, three.asset.emitters.value);
-}
-
 }  // namespace
 }  // namespace opaline::tests

@@ -177,17 +177,5 @@ TEST(Layers, DipoleWarnsThatItIgnoresTheMediaInside) {
     EXPECT_THAT(warnings_of(parts, kWalked), Not(HasSubstr("other media")));
 }
 
-TEST(Layers, FilesHaveTheSameBitsForAnyNumberOfThreads) {
-    const tests::Scene scene = tests::make_nested_scene(
-        {{make_sphere(2), make_forward_medium(4, 0.95f, 0, 1.3f)},
-         {make_sphere(2, 0.8f), make_forward_medium(20, 0.7f, 0.3f, 1.5f)}});
-    BakeOptions options = layered_bake(20000);
-    options.threads = 1;
-    const BakeResult one = tests::bake_scene(scene, options);
-    options.threads = 3;
-    const BakeResult three = tests::bake_scene(scene, options);
-    EXPECT_EQ(tests::largest_difference(one.asset, three.asset, "studio"), 0);
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <iterator>
 #include <numbers>
 
@@ -16,11 +15,9 @@
 #include "formats/media/presets.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
-#include "formats/opal/write_opal.h"
 #include "runtime/terms.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
-#include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {
 namespace {
@@ -53,15 +50,6 @@ Medium forward(float g) {
     return medium;
 }
 
-std::string file_bytes(const BakeResult& result) {
-    const tests::TemporaryFolder folder;
-    auto file = formats::AtomicFile::create(folder / "a.opal");
-    EXPECT_TRUE(file);
-    EXPECT_TRUE(formats::write_opal(result.asset.view(), std::move(*file)));
-    std::ifstream stream(folder / "a.opal", std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
 // The effects that the plan has on for the ball.
 std::vector<std::string> effects_of_ball(const std::vector<PlanEntry>& plan) {
     std::vector<std::string> on;
@@ -75,16 +63,6 @@ std::vector<std::string> effects_of_ball(const std::vector<PlanEntry>& plan) {
 }
 
 using Names = std::vector<std::string>;
-
-TEST(TranslucentPipeline, BytesDoNotDependOnTheNumberOfThreads) {
-    const auto scene = make_ball_on_floor(forward(0.3f));
-    BakeOptions options = small_bake();
-    options.coefficients = 64;
-    options.threads = 1;
-    const std::string one = file_bytes(bake_scene(scene, options));
-    options.threads = 2;
-    EXPECT_EQ(file_bytes(bake_scene(scene, options)), one);
-}
 
 TEST(TranslucentPipeline, EachEffectAloneIsSimulatedAlone) {
     const auto scene = make_ball_on_floor(wax());

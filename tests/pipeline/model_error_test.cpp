@@ -165,27 +165,6 @@ TEST(ModelError, SunsAreConnectedToThroughMatchedBoundaries) {
     }
 }
 
-TEST(ModelError, HasTheSameBitsForAnyNumberOfThreads) {
-    const tests::Scene scene = tests::make_ball_on_floor(tests::make_grey_medium(40, 2));
-    const BakeResult baked = tests::bake_scene(scene, tests::small_bake());
-    ModelCheckOptions wanted;
-    wanted.max_events = 300000;
-    Context one, three;
-    one.threads = 1, three.threads = 3;
-    const auto a = check_model(scene, baked.asset.view(), wanted, one).value();
-    const auto b = check_model(scene, baked.asset.view(), wanted, three).value();
-    EXPECT_EQ(a.rms_relative, b.rms_relative);
-    EXPECT_EQ(a.ci95[0], b.ci95[0]);
-    EXPECT_EQ(a.ci95[1], b.ci95[1]);
-    EXPECT_EQ(a.bias, b.bias);
-    EXPECT_EQ(a.missing, b.missing);
-    EXPECT_EQ(a.samples, b.samples);
-    ASSERT_TRUE(a.suns && b.suns);
-    EXPECT_EQ(a.suns->rms_relative, b.suns->rms_relative);
-    EXPECT_EQ(a.suns->ci95[1], b.suns->ci95[1]);
-    EXPECT_EQ(a.suns->samples, b.suns->samples);
-}
-
 TEST(ModelError, AgainstTruthTracedBeforeTheBakeIsTheSame) {
     const tests::Scene scene = tests::make_ball_on_floor(tests::make_grey_medium(2, 0.1f));
     const BakeResult baked = tests::bake_scene(scene, tests::small_bake());

@@ -4,14 +4,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <numbers>
 
-#include "formats/opal/write_opal.h"
 #include "tests/support/bake.h"
 #include "tests/support/effects.h"
-#include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {
 namespace {
@@ -22,26 +19,6 @@ BakeOptions small_options() {
     options.coefficients = 64;
     options.threads = 2;
     return options;
-}
-
-std::string file_bytes(const BakeResult& result) {
-    const tests::TemporaryFolder folder;
-    auto file = formats::AtomicFile::create(folder / "a.opal");
-    EXPECT_TRUE(file);
-    EXPECT_TRUE(formats::write_opal(result.asset.view(), std::move(*file)));
-    std::ifstream stream(folder / "a.opal", std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-TEST(Pipeline, BytesDoNotDependOnTheNumberOfThreads) {
-    const auto scene = tests::make_dented_ball();
-    BakeOptions options = small_options();
-    options.threads = 1;
-    const std::string one = file_bytes(tests::bake_scene(scene, options));
-    for (const unsigned threads : {2u, 5u}) {
-        options.threads = threads;
-        EXPECT_EQ(file_bytes(tests::bake_scene(scene, options)), one) << threads;
-    }
 }
 
 // A white furnace from end to end: scene, rays, wavelets, file rows, light, dot product.

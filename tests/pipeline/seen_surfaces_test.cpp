@@ -231,19 +231,6 @@ TEST(SeenSurfaces, WalksAreNoIdleKnobWhereTheyFindLightOfSurfacesAlone) {
     EXPECT_FALSE(bake::kVolumeWalks.matters({}, once.entries));
 }
 
-TEST(SeenSurfaces, AnyNumberOfThreadsGivesTheSameBits) {
-    const Scene scene = make_smoke_between();
-    bake::BakeOptions options = seen_bake();
-    options.quality = bake::Quality::draft;
-    options.threads = 1;
-    const bake::BakeResult one = bake_scene(scene, options);
-    options.threads = 3;
-    const bake::BakeResult three = bake_scene(scene, options);
-    EXPECT_EQ(one.asset.volumes.rows.code8, three.asset.volumes.rows.code8);
-    EXPECT_EQ(one.asset.volumes.rows.average_code, three.asset.volumes.rows.average_code);
-    EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
-}
-
 // What volumes send back to surfaces of what these had sent to them.
 TEST(SeenSurfaces, FloorBelowSmokeMissesLessOfItsLight) {
     Scene scene = make_smoky_floor({0.9f, 0.9f, 0.9f}, 8, 1);

@@ -161,17 +161,6 @@ TEST(SeenThrough, OfABodyTooDenseForItAddsLessThanTheBoundByWhichItIsLeftOut) {
     EXPECT_LE(std::abs(tests::mean_green(b) - tests::mean_green(a)), entry.bound);
 }
 
-TEST(SeenThrough, HasTheSameBitsForAnyNumberOfThreads) {
-    BakeOptions options = tests::only(kThrough);
-    options.threads = 1;
-    const BakeResult one = tests::bake_scene(ball_above_floor(0.3f, 0.5f), options);
-    options.threads = 3;
-    const BakeResult three = tests::bake_scene(ball_above_floor(0.3f, 0.5f), options);
-    EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
-    EXPECT_EQ(one.asset.transport.average_code, three.asset.transport.average_code);
-    EXPECT_EQ(one.error.rms_relative, three.error.rms_relative);
-}
-
 // The check follows paths from the surfaces that views end on, the bake looks at clusters.
 TEST(SeenThrough, ItsSelfCheckAgreesUnderEvenLight) {
     BakeOptions options = tests::only(kThrough);

@@ -79,19 +79,6 @@ TEST(SentLightBake, LeftOutItChangesNoBitOfRows) {
     EXPECT_NE(without.asset.transport.code8, with.asset.transport.code8);
 }
 
-TEST(SentLightBake, AnyNumberOfThreadsGivesTheSameBits) {
-    Scene scene = make_small_things();
-    scene.volumes.push_back(make_smoke(0.8f));
-    bake::BakeOptions options = smoke_bake();
-    options.quality = bake::Quality::draft;
-    options.threads = 1;
-    const bake::BakeResult one = bake_scene(scene, options);
-    options.threads = 3;
-    const bake::BakeResult three = bake_scene(scene, options);
-    EXPECT_EQ(one.asset.transport.average_code, three.asset.transport.average_code);
-    EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
-}
-
 // Smoke on a floor: path tracing of the scene as it is.
 TEST(SentLightBake, FileAgreesWithPathTracingAndMissesLittle) {
     Scene scene = make_scene({make_quad({-2, -1, -2}, {0, 0, 4}, {4, 0, 0}, 8)});

@@ -255,18 +255,6 @@ TEST(Sheet, CostsNothingWhereThereIsNone) {
     EXPECT_EQ(tests::relight_primitive(baked.asset, "white").front(), Rgb{});
 }
 
-TEST(Sheet, BytesDoNotDependOnTheNumberOfThreads) {
-    const tests::Scene scene =
-        make_sheet_scene({tests::make_sphere(3)}, {0.1f, 0.3f, 0}, {0.2f, 0.1f, 0.5f});
-    BakeOptions one = tests::small_bake(), three = one;
-    one.threads = 1;
-    three.threads = 3;
-    EXPECT_EQ(tests::largest_difference(tests::bake_scene(scene, one).asset,
-                                        tests::bake_scene(scene, three).asset, "studio",
-                                        {.eye = formats::Vec3{4, 2, 1}}),
-              0);
-}
-
 // No triangle area, no normal, a fold back onto itself.
 TEST(Sheet, HardCasesAreFiniteAndNoBrighterThanTheSky) {
     tests::Primitive sliver = make_leaf();

@@ -127,15 +127,5 @@ TEST(TargetError, TooFewPhaseTermsEndThePilotAndAreNamed) {
     EXPECT_THAT(result.warnings.back().remedy, ::testing::HasSubstr("--phase-terms"));
 }
 
-TEST(TargetError, BytesDoNotDependOnTheNumberOfThreads) {
-    BakeOptions one = asking_for(0.1), five = one;
-    one.threads = 1;
-    five.threads = 5;
-    const auto a = tests::bake_scene(soft_ball(), one), b = tests::bake_scene(soft_ball(), five);
-    EXPECT_EQ(a.asset.transport.code8, b.asset.transport.code8);
-    EXPECT_EQ(a.asset.transport.row_offset, b.asset.transport.row_offset);
-    EXPECT_EQ(a.asset.provenance, b.asset.provenance);
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -110,17 +110,6 @@ TEST(Transmission, StandsInTheRowOfMultipleScatteringWhereTermsAreApart) {
     EXPECT_GT(tests::largest_difference(all.asset, scattered.asset, "white", multiple), 0.2);
 }
 
-TEST(Transmission, HasTheSameBitsForAnyNumberOfThreads) {
-    BakeOptions options = tests::only({"transmission"});
-    options.threads = 1;
-    const BakeResult one = tests::bake_scene(clear_ball(0.1f, 0.2f), options);
-    options.threads = 3;
-    const BakeResult three = tests::bake_scene(clear_ball(0.1f, 0.2f), options);
-    EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
-    EXPECT_EQ(one.asset.transport.average_code, three.asset.transport.average_code);
-    EXPECT_EQ(one.error.rms_relative, three.error.rms_relative);
-}
-
 TEST(Transmission, ItsSelfCheckFindsFewViewsWorseThanMany) {
     BakeOptions options = tests::only({"transmission"});
     options.set(kStraightViews, 16);

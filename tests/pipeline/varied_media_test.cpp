@@ -75,19 +75,6 @@ TEST(VariedMedia, BakedBallWithVeinsInsideIsAsBrightAsPathTracedAndItsMeanIsNot)
     EXPECT_EQ(base.front(), base.back()) << "veins inside do not colour the light once more";
 }
 
-TEST(VariedMedia, BytesDoNotDependOnTheNumberOfThreads) {
-    tests::Scene scene = make_veined_ball(tests::make_grey_medium(4, 0.1f), 1);
-    tests::map_along_x(scene.primitives[0]);
-    scene.materials[0].medium->variation->density =
-        tests::add_inner_texture(scene, tests::make_rising_image());
-    BakeOptions one = scattering(kWalked, 20000), three = one;
-    one.threads = 1;
-    three.threads = 3;
-    EXPECT_EQ(tests::largest_difference(tests::bake_scene(scene, one).asset,
-                                        tests::bake_scene(scene, three).asset, "studio"),
-              0);
-}
-
 TEST(VariedMedia, OfLightScatteredOnceAloneThePlanSaysThatItNeedsWalks) {
     const tests::Scene ball = make_veined_ball(tests::make_grey_medium(4, 0.1f), 1);
     BakeOptions options = tests::only({"single"});

@@ -150,23 +150,6 @@ TEST(WalkModel, FileOfNineRowsShowsAnAbsorbingSlabTowardEveryEyeBetterThanOneOfF
     EXPECT_LT(error(9), 0.025) << "of the exact fit: .012";
 }
 
-TEST(WalkModel, BytesDoNotDependOnTheNumberOfThreads) {
-    formats::Medium medium = tests::make_grey_medium(4, 0.1f);
-    medium.sigma_s = {4, 4.5f, 9};
-    const tests::Scene scene = tests::make_ball_on_floor(medium);
-    for (const double model : {kWalked, kScaled}) {
-        BakeOptions one = bake_by(model, 20000);
-        one.set(kViewTerms, 9);
-        BakeOptions three = one;
-        one.threads = 1;
-        three.threads = 3;
-        EXPECT_EQ(tests::largest_difference(tests::bake_scene(scene, one).asset,
-                                            tests::bake_scene(scene, three).asset, "studio"),
-                  0)
-            << model;
-    }
-}
-
 // A pair of triangles within the ball, one beside it: nothing is between them.
 TEST(WalkModel, FlapsWithoutThicknessChangeNoBitOfTheBodyThatTheyStandIn) {
     tests::Primitive flaps;

@@ -56,6 +56,16 @@ class Rooms(unittest.TestCase):
         self.assertEqual(self.check("bake/low\nbake/high\nbake/gone", self.TREE)[0], 1)
 
 
+class OwnHeader(unittest.TestCase):
+    def check(self, source):
+        return run("check_own_header.py", {"bake/a.h": "", "bake/b.h": "", "bake/a.cpp": source, "bake/main.cpp": ""}, "bake")[0]
+
+    def test_first_is_accepted_and_another_is_found(self):
+        self.assertEqual(self.check('// why\n#include "bake/a.h"\n#include "bake/b.h"\n'), 0)
+        self.assertEqual(self.check('#include "bake/b.h"\n#include "bake/a.h"\n'), 1)
+        self.assertEqual(self.check("#include <vector>\n"), 1)
+
+
 class EffectNames(unittest.TestCase):
     TABLE = {"bake/effects/single/single.cpp": 'return "single";\n', "bake/effects/effects.cpp": '{"single", &kSingle},\n'}
 

@@ -225,17 +225,6 @@ TEST(ParticleRadiosity, SunOnAFloorGivesItsLuxTimesTheArea) {
     EXPECT_NEAR(sum_of(trace(scene, layout, {100000}), 0, layout.size()), 10 * 6 * 0.8, 0.5);
 }
 
-TEST(ParticleRadiosity, HasTheSameBitsForAnyNumberOfThreads) {
-    formats::Scene scene;
-    tests::add_surface(scene, tests::make_cube(2, true), 0.7f, 1);
-    const ElementLayout layout(scene, 0.01);
-    const Power one = trace(scene, layout, {10000}, 1), many = trace(scene, layout, {10000}, 5);
-    const std::vector<glm::vec3> irradiance = layout.join(one).irradiance;
-    EXPECT_EQ(irradiance, layout.join(many).irradiance);
-    const Power other = trace(scene, layout, {10000, 0, 1});  // another seed
-    EXPECT_NE(irradiance, layout.join(other).irradiance);
-}
-
 TEST(ParticleStart, PowerOfAllIsTheLampsAndRangeDims) {
     formats::Scene scene = tests::parallel_squares();
     scene.materials[0].double_sided = true;

@@ -78,15 +78,5 @@ TEST(BounceLight, ColourBleeds) {
     EXPECT_GT(blue, 0);
 }
 
-TEST(BounceLight, IsTheSameForAnyNumberOfThreads) {
-    BakeOptions options = with_rays(64);
-    options.threads = 1;
-    const BakeResult one = tests::bake_scene(tests::make_dented_ball(), options);
-    options.threads = 3;
-    const BakeResult three = tests::bake_scene(tests::make_dented_ball(), options);
-    EXPECT_EQ(one.asset.transport.code8, three.asset.transport.code8);
-    EXPECT_EQ(one.asset.transport.detail_scale, three.asset.transport.detail_scale);
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -71,14 +71,5 @@ TEST(Scatterers, SheetsAreSeenFromBothSides) {
     EXPECT_GT(behind, 50u);
 }
 
-TEST(Scatterers, AreTheSameForAnyNumberOfThreads) {
-    const formats::Scene scene = tests::make_dented_ball();
-    const auto one = find_in(scene, 100, 1).scatterers, four = find_in(scene, 100, 4).scatterers;
-    ASSERT_EQ(one.size(), four.size());
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        EXPECT_EQ(one[i].position, four[i].position);
-    }
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -80,15 +80,5 @@ TEST(SurfaceProbes, NormalsAreThoseOfTheSmoothSurfaceAndTheInnerPointLiesInside)
     }
 }
 
-TEST(SurfaceProbes, DoNotDependOnTheNumberOfThreads) {
-    const auto scene = tests::make_scene({tests::make_sphere(2)});
-    const auto one = draw(scene, 300, {0}, 1), four = draw(scene, 300, {0}, 4);
-    ASSERT_EQ(one.size(), four.size());
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        EXPECT_EQ(one[i].key, four[i].key);
-        EXPECT_EQ(one[i].receiver.origin, four[i].receiver.origin);
-    }
-}
-
 }  // namespace
 }  // namespace opaline::bake

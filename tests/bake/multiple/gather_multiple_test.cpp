@@ -328,20 +328,6 @@ TEST(GatherMultiple, TransportIsReciprocal) {
     EXPECT_NEAR(g_of_f / f_of_g, 1, 1e-4);
 }
 
-TEST(GatherMultiple, SameBytesForAnyNumberOfThreads) {
-    const Samples set = make_sphere(1, 5000, [](glm::dvec3 n) { return std::max(0.0, n.y); });
-    Context one, four;
-    one.threads = 1;
-    four.threads = 4;
-    const ClusterTree a = set.tree(one), b = set.tree(four);
-    ASSERT_EQ(a.nodes.size(), b.nodes.size());
-    for (std::size_t v = 0; v < a.nodes.size(); ++v) {
-        ASSERT_EQ(a.sums.size(), b.sums.size());
-        EXPECT_TRUE(std::ranges::equal(a.sums[v].value, b.sums[v].value)) << v;
-        EXPECT_EQ(a.nodes[v].norm, b.nodes[v].norm) << v;
-    }
-}
-
 TEST(GatherMultiple, CoincidentSamplesAndNoSamplesAreHarmless) {
     Samples same;
     for (int i = 0; i < 100; ++i) {

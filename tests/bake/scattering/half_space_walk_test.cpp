@@ -86,15 +86,5 @@ TEST(SlabWalk, ThickSlabIsAHalfSpace) {
     EXPECT_LT(s.through + s.straight, 1e-3);
 }
 
-TEST(HalfSpaceWalk, SameForAnyNumberOfThreads) {
-    Context one, three;
-    one.threads = 1;
-    three.threads = 3;
-    const auto a = walk_half_space(0.9, 0.3, 1.3, 10000, 5, one);
-    const auto b = walk_half_space(0.9, 0.3, 1.3, 10000, 5, three);
-    EXPECT_EQ(a.once, b.once);
-    EXPECT_EQ(a.rest, b.rest);
-}
-
 }  // namespace
 }  // namespace opaline::bake

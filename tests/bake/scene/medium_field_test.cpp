@@ -120,18 +120,6 @@ TEST(MediumField, TexturesFinerThanItsNodesAreTheirMean) {
     }
 }
 
-TEST(MediumField, IsTheSameForAnyNumberOfThreads) {
-    formats::Scene scene = make_ball(tests::make_grey_medium(9, 1));
-    variation_of(scene).color = tests::add_inner_texture(scene, tests::make_rising_image());
-    const MediumField many(scene, 0);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const MediumField alone(scene, 0);
-    for (int i = 0; i < 1000; ++i) {
-        const glm::vec3 at = glm::vec3(i % 10, i / 10 % 10, i / 100) / 5.0f - 0.9f;
-        EXPECT_EQ(many.color(at), alone.color(at));
-    }
-}
-
 TEST(MediumField, BodiesWithoutAVolumeOrCoordinatesHaveOne) {
     formats::Scene scene = make_ball(tests::make_grey_medium(9, 1));
     variation_of(scene).color = tests::add_inner_texture(scene, tests::make_even_image(0));

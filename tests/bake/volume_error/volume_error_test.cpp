@@ -128,19 +128,6 @@ TEST(VolumeError, FallsWithFinerNodesAndMoreWalks) {
               0.7 * check(scene, bake(scene, coarse)).rms_relative);
 }
 
-TEST(VolumeError, HasTheSameBitsForAnyNumberOfThreads) {
-    const formats::Scene scene = blob_scene(0.9f, 0.5f);
-    const formats::Asset asset = bake(scene, small_knobs());
-    const VolumeErrorReport one = check(scene, asset, 1), three = check(scene, asset, 3);
-    EXPECT_EQ(one.rms_relative, three.rms_relative);
-    EXPECT_EQ(one.ci95[0], three.ci95[0]);
-    EXPECT_EQ(one.ci95[1], three.ci95[1]);
-    EXPECT_EQ(one.samples, three.samples);
-    for (std::size_t place = 0; place < kLightPlaces; ++place) {
-        EXPECT_EQ(one.by_light[place].bias, three.by_light[place].bias);
-    }
-}
-
 // A floor ends rays, hides the sky from below and is not itself seen: what it reflects is on
 // neither side.
 TEST(VolumeError, IsSmallAboveAFloorToo) {

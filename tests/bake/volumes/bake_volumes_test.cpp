@@ -38,20 +38,6 @@ Knobs knobs_by(VolumeMethod method) {
 
 class BakeVolumesBy : public testing::TestWithParam<VolumeMethod> {};
 
-TEST_P(BakeVolumesBy, AnyNumberOfThreadsGivesTheSameBits) {
-    const formats::Scene scene =
-        tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.2), 3, 0.9f, 0.4f));
-    const RayScene sky = tests::empty_space();
-    const formats::Volumes one = bake(scene, sky, knobs_by(GetParam()), 1);
-    const formats::Volumes four = bake(scene, sky, knobs_by(GetParam()), 4);
-    EXPECT_EQ(one.rows.row_offset, four.rows.row_offset);
-    EXPECT_EQ(one.rows.code8, four.rows.code8);
-    EXPECT_EQ(one.rows.average_code, four.rows.average_code);
-    EXPECT_EQ(one.rows.average_scale, four.rows.average_scale);
-    EXPECT_EQ(one.rows.detail_scale, four.rows.detail_scale);
-    EXPECT_EQ(one.rows.index16, four.rows.index16);
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, BakeVolumesBy,
                          testing::Values(VolumeMethod::walks, VolumeMethod::path_integration));
 

@@ -86,18 +86,6 @@ TEST(BakeGlow, InEquilibriumWithEvenLightAScatteringVolumeCannotBeSeen) {
     }
 }
 
-TEST(BakeGlow, AnyNumberOfThreadsGivesTheSameBits) {
-    const formats::Scene scene = glowing_blob({1, 2, 3}, glm::vec3(0.8f), 0.3f, glm::vec3(1));
-    Knobs knobs = glow_knobs();
-    knobs.set(kVolumeSpacing, 8);
-    const formats::Glow one = tests::bake_volumes_of(scene, knobs, 1).glow;
-    const formats::Glow four = tests::bake_volumes_of(scene, knobs, 4).glow;
-    EXPECT_EQ(one.code, four.code);
-    EXPECT_EQ(one.value, four.value);
-    EXPECT_EQ(one.brick, four.brick);
-    EXPECT_FALSE(one.value.empty());
-}
-
 TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
     formats::Scene scene = glowing_blob({1, 1, 1}, glm::vec3(0), 0, {3, 2, 1});
     formats::Volume& volume = scene.volumes[0];

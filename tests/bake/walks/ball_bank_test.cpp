@@ -93,21 +93,6 @@ TEST(BallBank, MomentsOfExitsAreThoseThatTransportConserves) {
     }
 }
 
-TEST(BallBank, IsTheSameForAnyNumberOfThreads) {
-    const bake::BallBank one = make_bank(henyey_greenstein(0.5f), 5, 1),
-                         three = make_bank(henyey_greenstein(0.5f), 5, 3);
-    ASSERT_EQ(one.radii(), three.radii());
-    for (int i = 0; i < 1000; ++i) {
-        const float u = static_cast<float>(i) / 1000;
-        const bake::BallJump a = one.draw(1.5f + 4 * u, {0, 1, 0}, u, 0.3f),
-                             b = three.draw(1.5f + 4 * u, {0, 1, 0}, u, 0.3f);
-        EXPECT_EQ(a.way, b.way);
-        EXPECT_EQ(a.direction, b.direction);
-        EXPECT_EQ(a.length, b.length);
-        EXPECT_EQ(a.scatterings, b.scatterings);
-    }
-}
-
 // Each radius has walks of r^2 / 2 scatterings and more.
 TEST(BallBank, HasNoRadiiWhoseWalksWouldHaveMoreEventsThanAllowed) {
     const bake::PhaseTable phase = make_phase(formats::PhaseFunction::Type::isotropic, 0);

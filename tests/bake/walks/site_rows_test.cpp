@@ -1,5 +1,5 @@
-#include "bake/effects/multiple/walks/site_row_sum.h"
 #include "bake/effects/multiple/walks/site_rows.h"
+#include "bake/effects/multiple/walks/site_row_sum.h"
 
 #include <gtest/gtest.h>
 
@@ -171,19 +171,6 @@ TEST(SiteRows, OfWalksThatAreSpreadEvenlyHaveLessNoise) {
         squares += radiance * radiance / kSites;
     }
     EXPECT_LT(std::sqrt(squares - sum * sum) / sum, 0.37);
-}
-
-TEST(SiteRows, HaveTheSameBitsForAnyNumberOfThreads) {
-    const WalkedBall ball = make_ball(5, 0.9f);
-    for (const bool inside : {false, true}) {
-        const bake::WalkStage one = walk(ball, 1, inside, 9), three = walk(ball, 3, inside, 9);
-        ASSERT_EQ(one.rows.blocks.size(), three.rows.blocks.size());
-        for (std::size_t b = 0; b < one.rows.blocks.size(); ++b) {
-            EXPECT_EQ(one.rows.blocks[b].index, three.rows.blocks[b].index);
-            EXPECT_EQ(one.rows.blocks[b].value, three.rows.blocks[b].value);
-        }
-        EXPECT_EQ(one.counts.events, three.counts.events);
-    }
 }
 
 // A blade .4 mean free paths thick: its edge shows light that was scattered along the blade, its

@@ -181,13 +181,5 @@ TEST(PlaneGather, AWrappingGridIsTheSamePeriodOverAndOver) {
     }
 }
 
-TEST(PlaneGather, ThreadsDoNotChangeABit) {
-    const PlaneGrid grid{130, 97, 25, 20, 100, false};
-    const auto cells = paint(
-        grid, [](double x, double z) { return static_cast<float>(std::fmod(x * 7 + z * 3, 11)); });
-    const GatherPlan plan = make_gather_plan(grid);
-    EXPECT_EQ(gather(plan, cells, {1, 2, 3}, 1), gather(plan, cells, {1, 2, 3}, 5));
-}
-
 }  // namespace
 }  // namespace opaline::runtime

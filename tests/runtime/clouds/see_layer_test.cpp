@@ -242,19 +242,6 @@ TEST(GroundLight, ShadowsLieAwayFromTheSun) {
     EXPECT_GT(direct_share(lit.light, sun, 500, 500 - 1000, 0).g, 0.999f);
 }
 
-TEST(LayerLight, HasTheSameBitsForAnyNumberOfThreads) {
-    const auto grid = [](unsigned threads) {
-        test::LitLayer lit(heaps(false), bright_day(0.4), {.time = 12, .threads = threads});
-        std::vector<Rgb> all = lit.light.ground_light.cell.value;
-        all.insert(all.end(), lit.light.base_light.cell.value.begin(),
-                   lit.light.base_light.cell.value.end());
-        return all;
-    };
-    const std::vector<Rgb> one = grid(1), five = grid(5);
-    ASSERT_EQ(one.size(), five.size());
-    EXPECT_EQ(std::memcmp(one.data(), five.data(), one.size() * sizeof(Rgb)), 0);
-}
-
 TEST(LayerMarch, MeasuresWhatIsInsideOfAnEvenLayerExactly) {
     formats::LayerRecord record = test::even_test_layer().record;
     const std::vector<std::uint16_t> half(16, 32768);

@@ -100,13 +100,6 @@ TEST(LayerPass, SmoothPixelsAreWhatTheirSamplesAre) {
     }
 }
 
-TEST(LayerPass, HasTheSameBitsForAnyNumberOfThreads) {
-    const test::LitLayer lit(pass_clouds(false), day());
-    const Camera camera = camera_toward({0, 0, 0}, test::direction_of(0.3, 0.2));
-    const Picture one = draw(lit, camera, 1), five = draw(lit, camera, 5);
-    EXPECT_EQ(std::memcmp(one.pixel.data(), five.pixel.data(), one.pixel.size() * sizeof(Rgb)), 0);
-}
-
 TEST(LayerPass, SurfacesStayWhereTheyAreInFrontOfEverything) {
     const test::LitLayer lit(pass_clouds(false), day());
     const Camera camera = camera_toward({0, 500, 0}, {0, -1, 0});

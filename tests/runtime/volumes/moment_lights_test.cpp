@@ -53,15 +53,5 @@ TEST(MomentLights, OfATexelAreTheHarmonicsOfItsCentre) {
     }
 }
 
-TEST(MomentLights, AreTheSameForAnyNumberOfThreads) {
-    const LightVector light =
-        project_environment(tests::lat_long_map(64, 32, tests::smooth_sky), 16);
-    const auto one = moments_of(light, 9, 1), many = moments_of(light, 9, 5);
-    for (std::size_t k = 0; k < 9; ++k) {
-        EXPECT_EQ(one[k].rgba, many[k].rgba);
-    }
-    EXPECT_TRUE(moments_of(light, 0).empty());
-}
-
 }  // namespace
 }  // namespace opaline::runtime

@@ -161,15 +161,6 @@ TEST(SunColumns, FromAnywhereAreThoseOfTheirPointsAndOfPlacesBeforeAndBehindThem
     }
 }
 
-TEST(SunColumns, AreTheSameForAnyNumberOfThreads) {
-    const std::vector<Vec3> suns = some_suns();
-    PlacedWaves one{waves(2), waves(8)}, many{waves(2), waves(8)};
-    find_sun_columns(one.placed, suns, 1);
-    find_sun_columns(many.placed, suns, 7);
-    EXPECT_EQ(one.placed[0].column, many.placed[0].column);
-    EXPECT_EQ(one.placed[1].column, many.placed[1].column);
-}
-
 // Else relighting takes as long as the square of the number of volumes.
 TEST(SunShadows, OnlyVolumesTowardTheSunMayShade) {
     std::vector<TestVolume> row;

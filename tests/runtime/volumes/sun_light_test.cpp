@@ -198,13 +198,6 @@ TestVolume varied(double g) {
     return volume;
 }
 
-TEST(SunLight, HasTheSameBitsForAnyNumberOfThreads) {
-    const LitTestVolumes one({varied(0.85), varied(0.5)}, many_suns(), {.threads = 1});
-    const LitTestVolumes many({varied(0.85), varied(0.5)}, many_suns(), {.threads = 7});
-    EXPECT_EQ(one.light.part[1].suns, kMaxSuns);
-    EXPECT_EQ(one.light.coefficient, many.light.coefficient);
-}
-
 // Each volume meets the light as it would alone, its own phase function and rows: they are too thin
 // to dim each other.
 TEST(SunLight, OfVolumesThatNeedNoSunsIsTheWholeLight) {

@@ -135,11 +135,6 @@ TEST(VolumePicture, TheSkyIsSeenThroughItAndABlackBackgroundToo) {
     }
 }
 
-TEST(VolumePicture, HasTheSameBitsForAnyNumberOfThreads) {
-    const Asset asset = wall_at(0.1f);
-    EXPECT_EQ(draw(asset, true, 1).with.pixel, draw(asset, true, 6).with.pixel);
-}
-
 TEST(VolumePicture, AnAssetOfVolumesAloneIsFramedAndDrawn) {
     Asset asset = test::make_asset(kSize, 16);
     asset.volumes = test::make_volumes(kSize);
