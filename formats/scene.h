@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/image/image.h"
+#include "formats/opal/preview_image.h"
 #include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
 #include "formats/sparse_grid.h"
@@ -40,8 +41,8 @@ struct Marble {
     std::vector<Rgb> colors;  ///< from within a vein to halfway between two; 2 or more, in [0, 1]
 };
 
-/// How a texture goes on outside of [0, 1].
-enum class TextureWrap { repeat, clamp, mirror };
+/// How a texture is looked up along one axis.
+using TextureWrap = Wrap;
 
 /// An image over the surface of a body that says what is inside: a point inside has the value of
 /// the nearest point of the surface. Coordinates: Primitive::texcoord.
@@ -145,6 +146,8 @@ struct Material {
     std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque
     std::optional<Sheet> sheet = std::nullopt;    ///< thin-walled; no medium then
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
+    bool is_unstated_metal = false;  ///< a metal only because the file states neither a metallic
+                                     ///< factor nor a roughness, and glTF's default is a metal
 };
 
 /// The largest share of light that an opaque material may reflect diffusely besides its base
@@ -231,7 +234,9 @@ struct EmitterGroup {
 };
 
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
-/// Vertices keep the original order and count: receivers and output rows use this numbering.
+/// Vertices keep the original order: receivers and output rows use this numbering. Where NORMAL is
+/// missing and the faces of a vertex differ in their normals, copies of it follow on the last one;
+/// `index` says which face has which (formats/gltf/README.md, "Missing normals").
 struct Primitive {
     std::uint32_t node = 0, mesh = 0, primitive = 0;  ///< indices in the file, for messages
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"

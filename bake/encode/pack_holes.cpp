@@ -55,8 +55,8 @@ Holes pack_holes(const Scene& scene, std::vector<PreviewImageData>& images) {
                 material.base_color_image, static_cast<std::uint32_t>(images.size()));
             if (is_new) images.push_back(alpha_of(scene.images[material.base_color_image]));
             hole.image = found->second;
-            hole.wrap_u = to_wrap(material.wrap_u);
-            hole.wrap_v = to_wrap(material.wrap_v);
+            hole.wrap_u = material.wrap_u;
+            hole.wrap_v = material.wrap_v;
         }
         holes.record.push_back(hole);
     }

@@ -32,8 +32,7 @@ std::string find_hole_fault(const AssetView& asset, std::size_t i) {
     if (hole.image != kNoImage && (hole.image >= asset.images.size() || asset.texcoord.empty())) {
         return "it uses an image or texture coordinates that are not there";
     }
-    if (static_cast<std::uint32_t>(hole.wrap_u) > 2 ||
-        static_cast<std::uint32_t>(hole.wrap_v) > 2) {
+    if (!is_known(hole.wrap_u) || !is_known(hole.wrap_v)) {
         return "unknown texture wrap mode";
     }
     return {};

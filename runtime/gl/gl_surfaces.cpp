@@ -140,7 +140,7 @@ std::string fragment_text(SurfaceKind kind) {
     if (kind.has_image()) {
         text += define("WRAP_CLAMP", std::to_string(static_cast<int>(formats::Wrap::clamp))) +
                 define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
-                image_text;
+                define("WRAP_NEAREST", std::to_string(formats::kNearestBit)) + image_text;
     }
     text += cube_map_text;
     text += surface_text;

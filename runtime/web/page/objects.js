@@ -61,7 +61,7 @@ const Objects = (() => {
       SEPARATE: primitive.isSeparate };
     const defines = Object.entries(words).filter(([, wanted]) => wanted).map(([word]) => [word, ""]);
     defines.push(["RADIANCE_OF_ROWS", ""], ["FORWARD_DEPTH", ""], ["TERMS", terms],
-                 ["HARMONICS", harmonics], ["WRAP_CLAMP", 1], ["WRAP_MIRROR", 2]);
+                 ["HARMONICS", harmonics], ["WRAP_CLAMP", 1], ["WRAP_MIRROR", 2], ["WRAP_NEAREST", 4]);
     for (const word of ["LOBE_TAPS", "ALBEDO_ROWS", "ALBEDO_COLUMNS", "NARROW_ROUGHNESS",
                         "WIDE_ROUGHNESS"]) {
       defines.push([word, c[word]]);
