@@ -125,6 +125,7 @@ formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& p
             return std::move(status).error();
         }
     }
+    join(formats::warn_of_unstated_metals(imported->scene), *imported);
     return imported;
 }
 

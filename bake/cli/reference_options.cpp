@@ -136,6 +136,7 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options) {
                     "length of one unit of the scene file")
         ->check(real_number(kLeastUnit, kMostUnit))
         ->option_text("X [1]");
+    add_smooth_normals_option(command, options.smooth_normals);
     add_path_integration_options(command, options.paths);
     add_estimate_options(command, options);
     add_camera_options(command, options.camera);

@@ -18,7 +18,7 @@ struct ReferenceOptions {
     std::string scene, media, light, output, terms, texture_filter = "none";
     CameraOptions camera;
     PathIntegrationOptions paths;
-    double metres_per_unit = 1, rotate_light = 0, seconds = 0;
+    double metres_per_unit = 1, smooth_normals = 0, rotate_light = 0, seconds = 0;
     std::uint32_t receivers = 0, samples = 0, max_depth = 0;
     std::uint64_t seed = 0;
     float exposure = 0;

@@ -84,6 +84,15 @@ void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOp
 
 }  // namespace
 
+void add_smooth_normals_option(CLI::App& command, double& degrees) {
+    command
+        .add_option("--smooth-normals", degrees,
+                    "of meshes without NORMAL: smooth across edges of less than this angle; 0: "
+                    "flat, as glTF says")
+        ->check(real_number(0, 180))
+        ->option_text("DEGREES [0]");
+}
+
 void add_subject_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option("scene", options.scene,
@@ -120,6 +129,7 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
                     "length of one unit of the scene file")
         ->check(real_number(kLeastUnit, kMostUnit))
         ->option_text("X [1]");
+    add_smooth_normals_option(command, options.smooth_normals);
     add_memory_option(command, options.memory_limit);
 }
 
@@ -181,7 +191,9 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     const auto check_size = [&](const formats::SceneCounts& counts) {
         return check(bake::count_memory(counts));
     };
-    auto imported = open_scene(options.scene, {options.metres_per_unit, check_size}, options.media);
+    auto imported =
+        open_scene(options.scene, {options.metres_per_unit, check_size, options.smooth_normals},
+                   options.media);
     if (!imported) {
         return imported;
     }

@@ -12,10 +12,13 @@ namespace opaline::cli {
 /// `--metres-per-unit`: from a tenth of a nanometre to a light year.
 inline constexpr double kLeastUnit = 1e-10, kMostUnit = 1e16;
 
+/// `--smooth-normals`: of primitives without NORMAL.
+void add_smooth_normals_option(CLI::App& command, double& degrees);
+
 /// Options common to `bake`, `plan` and `sweep`.
 struct SceneOptions {
     std::string scene, media;
-    double metres_per_unit = 1.0;
+    double metres_per_unit = 1.0, smooth_normals = 0.0;
     std::string effects = "auto";
     std::uint64_t memory_limit = 0;  ///< [bytes]; 0: what the machine has
     bake::BakeOptions bake;

@@ -16,6 +16,8 @@ struct ImportOptions {
     /// Asked before anything is built that grows with the number of instances; an error of it is
     /// the import's. Empty: any size will do.
     std::function<Status(const SceneCounts&)> check_size = {};
+    /// Of primitives without NORMAL: edges of less than this angle are smooth [degrees, 0 to 180].
+    double smooth_angle = 0.0;
 };
 
 /// A scene and everything worth telling the user about it.
@@ -31,14 +33,19 @@ struct ImportedScene {
 /// safe.
 ///
 /// Primitives stand in the order of the default scene's nodes depth-first, then the mesh's
-/// primitives; vertices keep their number and order. Points and lines keep their running number as
-/// an entry without vertices. Where NORMAL is missing, smooth normals are computed over vertices
-/// at the same position.
+/// primitives; vertices keep their order. Points and lines keep their running number as an entry
+/// without vertices. Where NORMAL is missing, normals are flat or smooth as the options say, and
+/// vertices whose faces differ in their normals have copies behind the primitive's last vertex.
+/// Meshes stand in their default pose: morph weights and joints at rest.
 ///
 /// Errors: `bad_input` for a file that is missing, damaged, not conforming, without a triangle, or
 /// that requires an unsupported extension; `resource` for one past the limits in limits.h or past
 /// memory; `usage` for options out of range. Every fault found before stopping is listed.
 Result<ImportedScene> import_gltf(const std::filesystem::path& path,
                                   const ImportOptions& options = {});
+
+/// One warning that names the materials that are metals only because the file says nothing of it
+/// (Material::is_unstated_metal). For a scene whose media are applied: a medium is no metal.
+std::vector<Diagnostic> warn_of_unstated_metals(const Scene& scene);
 
 }  // namespace opaline::formats
