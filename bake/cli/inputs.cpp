@@ -162,6 +162,9 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
     if (auto status = report_warnings(imported->warnings); !status) {
         return std::move(status).error();
     }
+    for (const std::string& note : imported->notes) {
+        print_note("opaline: " + printable(path.string()) + ": " + note);
+    }
     return imported;
 }
 

@@ -137,13 +137,12 @@ void tell_of_normals(const ComputedNormals& made, double smooth_angle, Report& r
         how =
             "smooth across edges of less than " + how + (how.back() == '.' ? "0" : "") + " degrees";
     }
-    report.warn("",
-                "NORMAL is missing in " + std::to_string(made.primitives) +
-                    " primitives and is computed: " + how +
-                    (made.vertices > 0 ? "; " + std::to_string(made.vertices) +
-                                             " vertices are added where faces differ"
-                                       : ""),
-                smooth_angle > 0 ? "" : "--smooth-normals DEGREES smooths");
+    report.notes.push_back("NORMAL is missing in " + std::to_string(made.primitives) +
+                           " primitives and is computed: " + how +
+                           (made.vertices > 0 ? "; " + std::to_string(made.vertices) +
+                                                    " vertices are added where faces differ"
+                                              : "") +
+                           (smooth_angle > 0 ? "" : " (--smooth-normals DEGREES smooths)"));
 }
 
 }  // namespace opaline::formats::gltf

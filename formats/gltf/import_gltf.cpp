@@ -124,7 +124,8 @@ Result<ImportedScene> import_gltf(const std::filesystem::path& path, const Impor
         if (report.failed()) {
             return report.take_error();
         }
-        return ImportedScene{std::move(scene), report.take_warnings(), std::move(media)};
+        return ImportedScene{std::move(scene), report.take_warnings(), std::move(media),
+                             std::move(report.notes)};
     } catch (const std::bad_alloc&) {
         return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
                           "split or simplify the scene");

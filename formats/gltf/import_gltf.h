@@ -26,6 +26,7 @@ struct ImportedScene {
     std::vector<Diagnostic> warnings;  ///< what was repaired, and what the baker will not simulate
     std::string media;  ///< the root extension OPALINE_media as text, not yet applied: see
                         ///< parse_media and apply_media of formats/media; empty: none
+    std::vector<std::string> notes = {};  ///< about a conforming file, one line each: no warnings
 };
 
 /// Reads a glTF 2.0 file, text or binary (told apart by content), with its buffers and the
