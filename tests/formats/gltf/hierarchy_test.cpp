@@ -313,6 +313,7 @@ TEST(GltfHierarchy, NodeListedTwiceStandsOnce) {
 
 TEST(GltfHierarchy, EveryInstanceOfAMeshIsPlaced) {
     AssetBuilder asset = triangle_asset();
+    asset.add_node(0);
     const float h = std::sqrt(0.5f);
     const auto translation = asset.add<float>({0, 0, 0, 5, 0, 0}, "VEC3");
     const auto rotation = asset.add<float>({0, 0, 0, 1, 0, 0, h, h}, "VEC4");
@@ -322,7 +323,6 @@ TEST(GltfHierarchy, EveryInstanceOfAMeshIsPlaced) {
     Json& instances = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
     instances = {{"TRANSLATION", translation}, {"ROTATION", rotation}, {"SCALE", scale}};
     asset.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
-    asset.add_node(0);
     const auto imported = must_import(asset);
     ASSERT_EQ(imported.scene.primitives.size(), 3u);
     EXPECT_EQ(imported.scene.primitives[0].position[1], glm::vec3(1, 0, 1));
