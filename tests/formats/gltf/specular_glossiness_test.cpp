@@ -8,10 +8,10 @@ using formats::Rgb;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-constexpr const char* kName = "KHR_materials_pbrSpecularGlossiness";
+constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness";
 
 /// A triangle with texture coordinates whose material is `extension`.
-AssetBuilder asset_with(const Json& extension) {
+AssetBuilder specular_asset(const Json& extension) {
     AssetBuilder asset = triangle_asset();
     Json& primitive = asset.json["meshes"][0]["primitives"][0];
     primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
@@ -19,11 +19,11 @@ AssetBuilder asset_with(const Json& extension) {
     // What other readers fall back on does not count.
     asset.json["materials"] =
         Json::array({{{"pbrMetallicRoughness", {{"baseColorFactor", {0.1, 0.1, 0.1, 1}}}},
-                      {"extensions", {{kName, extension}}}}});
+                      {"extensions", {{kSpecularGlossiness, extension}}}}});
     return asset;
 }
 
-std::size_t add_texture(AssetBuilder& asset, const Blob& rgba, std::uint32_t width) {
+std::size_t add_specular_texture(AssetBuilder& asset, const Blob& rgba, std::uint32_t width) {
     const Blob png = encode_png(rgba, width, 1);
     const std::size_t view = asset.add_view(png.data(), png.size());
     asset.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
@@ -32,11 +32,11 @@ std::size_t add_texture(AssetBuilder& asset, const Blob& rgba, std::uint32_t wid
 }
 
 TEST(GltfSpecularGlossiness, FactorsBecomeAnInfiniteIndexOfThatSpecularColour) {
-    AssetBuilder asset = asset_with({{"diffuseFactor", {0.2, 0.5, 0.8, 0.5}},
-                                     {"specularFactor", {0.25, 0.5, 0}},
-                                     {"glossinessFactor", 0.75}});
+    AssetBuilder asset = specular_asset({{"diffuseFactor", {0.2, 0.5, 0.8, 0.5}},
+                                         {"specularFactor", {0.25, 0.5, 0}},
+                                         {"glossinessFactor", 0.75}});
     asset.json["materials"][0]["alphaMode"] = "BLEND";
-    asset.json["extensionsRequired"] = {kName};
+    asset.json["extensionsRequired"] = {kSpecularGlossiness};
     const auto imported = must_import(asset);
     const Material& m = imported.scene.materials.at(0);
     EXPECT_EQ(m.base_color, (Rgb{0.2f, 0.5f, 0.8f}));
@@ -50,9 +50,9 @@ TEST(GltfSpecularGlossiness, FactorsBecomeAnInfiniteIndexOfThatSpecularColour) {
 }
 
 TEST(GltfSpecularGlossiness, DiffuseTextureIsTheBaseColour) {
-    AssetBuilder asset = asset_with(Json::object());
-    asset.json["materials"][0]["extensions"][kName]["diffuseTexture"]["index"] =
-        add_texture(asset, {255, 0, 0, 255}, 1);
+    AssetBuilder asset = specular_asset(Json::object());
+    asset.json["materials"][0]["extensions"][kSpecularGlossiness]["diffuseTexture"]["index"] =
+        add_specular_texture(asset, {255, 0, 0, 255}, 1);
     const auto imported = must_import(asset);
     EXPECT_EQ(imported.scene.materials.at(0).base_color_image, 0u);
     EXPECT_EQ(imported.scene.images.at(0).rgba[0], 255);
@@ -60,11 +60,12 @@ TEST(GltfSpecularGlossiness, DiffuseTextureIsTheBaseColour) {
 
 TEST(GltfSpecularGlossiness, MetalsOfATextureAreFoundTexelByTexel) {
     // A matt red dielectric of F0 = .04 (code 56 is .0395), and gold: no diffuse part.
-    AssetBuilder asset = asset_with(Json::object());
-    Json& material = asset.json["materials"][0]["extensions"][kName];
-    material["diffuseTexture"]["index"] = add_texture(asset, {200, 10, 10, 255, 0, 0, 0, 128}, 2);
+    AssetBuilder asset = specular_asset(Json::object());
+    Json& material = asset.json["materials"][0]["extensions"][kSpecularGlossiness];
+    material["diffuseTexture"]["index"] =
+        add_specular_texture(asset, {200, 10, 10, 255, 0, 0, 0, 128}, 2);
     material["specularGlossinessTexture"]["index"] =
-        add_texture(asset, {56, 56, 56, 0, 255, 219, 145, 204}, 2);
+        add_specular_texture(asset, {56, 56, 56, 0, 255, 219, 145, 204}, 2);
     const auto imported = must_import(asset);
     const Material& m = imported.scene.materials.at(0);
     ASSERT_EQ(imported.scene.images.size(), 2u) << "nothing that no material uses";
@@ -85,11 +86,12 @@ TEST(GltfSpecularGlossiness, MetalsOfATextureAreFoundTexelByTexel) {
 }
 
 TEST(GltfSpecularGlossiness, ATextureMappedOtherwiseGivesItsMean) {
-    AssetBuilder asset = asset_with({{"glossinessFactor", 0.5}});
-    Json& material = asset.json["materials"][0]["extensions"][kName];
-    material["diffuseTexture"]["index"] = add_texture(asset, {9, 9, 9, 255}, 1);
+    AssetBuilder asset = specular_asset({{"glossinessFactor", 0.5}});
+    Json& material = asset.json["materials"][0]["extensions"][kSpecularGlossiness];
+    material["diffuseTexture"]["index"] = add_specular_texture(asset, {9, 9, 9, 255}, 1);
     material["specularGlossinessTexture"] = {
-        {"index", add_texture(asset, {255, 0, 0, 255, 0, 0, 0, 255}, 2)}, {"texCoord", 1u}};
+        {"index", add_specular_texture(asset, {255, 0, 0, 255, 0, 0, 0, 255}, 2)},
+        {"texCoord", 1u}};
     const auto imported = must_import(asset);
     EXPECT_EQ(imported.scene.materials.at(0).gloss.specular_color, (Rgb{0.5f, 0, 0}));
     EXPECT_EQ(imported.scene.materials[0].gloss.roughness, 0.5f);
@@ -97,13 +99,13 @@ TEST(GltfSpecularGlossiness, ATextureMappedOtherwiseGivesItsMean) {
 }
 
 TEST(GltfSpecularGlossiness, WrongMembersAreNamed) {
-    EXPECT_THAT(errors_of(import_asset(asset_with({{"diffuseFactor", {1, 1, 1}}}))),
+    EXPECT_THAT(errors_of(import_asset(specular_asset({{"diffuseFactor", {1, 1, 1}}}))),
                 HasSubstr("diffuseFactor is not an array of four numbers"));
-    EXPECT_THAT(errors_of(import_asset(asset_with({{"specularFactor", 1}}))),
+    EXPECT_THAT(errors_of(import_asset(specular_asset({{"specularFactor", 1}}))),
                 HasSubstr("specularFactor is not an array of three numbers"));
-    EXPECT_THAT(errors_of(import_asset(asset_with({{"diffuseTexture", {{"index", 5u}}}}))),
+    EXPECT_THAT(errors_of(import_asset(specular_asset({{"diffuseTexture", {{"index", 5u}}}}))),
                 HasSubstr("texture 5 does not exist"));
-    EXPECT_THAT(errors_of(import_asset(asset_with(3))), HasSubstr("it is not an object"));
+    EXPECT_THAT(errors_of(import_asset(specular_asset(3))), HasSubstr("it is not an object"));
 }
 
 }  // namespace
