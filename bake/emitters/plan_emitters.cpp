@@ -28,12 +28,15 @@ double distance_of(const GapBox& a, const GapBox& b) {
     return glm::length(glm::max(glm::dvec3(0), glm::max(a.low - b.high, b.low - a.high)));
 }
 
-// No surface sends out more of what arrives; 1 where metals, sheets or media have a say.
+// No surface sends out more of what arrives; 1 where metals, thin-walled surfaces or media have a
+// say.
 double largest_albedo(const formats::Scene& scene) {
     float most = 0;
     for (const formats::Primitive& primitive : scene.primitives) {
         const formats::Material& material = scene.materials[primitive.material];
-        if (material.medium || material.sheet || diffuse_share(material) < 1) return 1;
+        const bool is_wall = !material.sheet || (material.sheet->transmit == formats::Rgb{} &&
+                                                 material.sheet->clear == 0);
+        if (material.medium || !is_wall || diffuse_share(material) < 1) return 1;
         const formats::Rgb c = material.base_color;
         most = std::max({most, c.r, c.g, c.b});
     }
