@@ -84,11 +84,17 @@ struct Medium {
     std::optional<Variation> variation = std::nullopt;
 };
 
-/// A surface without an inside, such as a leaf or paper: of the light that arrives on one side, the
+/// A surface that is lit and seen on both sides, such as a leaf, paper, a window pane or a
+/// double-sided wall: of the light that arrives on one side, the
 /// share base colour * reflect leaves on that side and base colour * transmit on the other one,
 /// both diffusely. With the base colour the two shares of a band add up to 1 at most.
 struct Sheet {
     Rgb reflect{1, 1, 1}, transmit{0, 0, 0};  ///< each in [0, 1]
+    /// Thin glass: of the light that meets it, the share clear * T passes straight, T that of two
+    /// smooth faces of index `eta` (opal/thin_glass.h). `reflect`, `transmit` and the gloss are of
+    /// the rest.
+    float clear = 0;   ///< in [0, 1]
+    float eta = 1.5f;  ///< >= 1; or 0: infinite
     /// The material's base colour, sides and metallic factor without it, for what replaces it.
     Rgb opaque_color{1, 1, 1};
     bool opaque_double_sided = false;
@@ -151,6 +157,13 @@ struct Material {
 /// colour: 1 - metallic; an image may make parts of a metal dielectric.
 inline float diffuse_share(const Material& material) {
     return material.gloss.image == kNone ? 1 - material.gloss.metallic : 1.0f;
+}
+
+/// A metal throughout: it reflects nothing diffusely. Rows of its receivers hold what other
+/// surfaces send to it, of which its lobe mirrors the mean where something blocks it
+/// (runtime/surface.h).
+inline bool is_metal(const Material& material) {
+    return !material.medium && !material.gloss.is_diffuse() && diffuse_share(material) == 0;
 }
 
 /// A medium that fills no closed surface: smoke, fog, a cloud. Its extinction at a point is

@@ -44,7 +44,12 @@ std::vector<std::vector<Neighbour>> find_neighbours(BodyShells& body) {
                sides[end].high == sides[i].high) {
             ++end;
         }
-        body.open_edges += (end - i) % 2;
+        if ((end - i) % 2 != 0) {
+            ++body.open_edges;
+            for (std::size_t k = i; k < end; ++k) {
+                body.triangle[sides[k].triangle].is_at_end = true;
+            }
+        }
         if (end - i == 2) {
             const Side &a = sides[i], &b = sides[i + 1];
             neighbours[a.triangle].push_back({b.triangle, a.upward != b.upward});
@@ -105,6 +110,7 @@ void cut_into_shells(BodyShells& body) {
         for (std::size_t at = shell.first; at < body.order.size(); ++at) {
             BodyTriangle& t = body.triangle[body.order[at]];
             (t.turned ? turned : kept) += glm::length(area_vector(body, t));
+            shell.is_open = shell.is_open || t.is_at_end;
             for (const Neighbour& n : neighbours[body.order[at]]) {
                 if (!seen[n.triangle]) {
                     seen[n.triangle] = true;
@@ -137,6 +143,12 @@ void cut_into_shells(BodyShells& body) {
     }
 }
 
+std::vector<bool> only(const Scene& scene, std::uint32_t material) {
+    std::vector<bool> chosen(scene.materials.size(), false);
+    chosen[material] = true;
+    return chosen;
+}
+
 }  // namespace
 
 std::array<glm::dvec3, 3> corners(const BodyShells& body, const BodyTriangle& t) {
@@ -151,16 +163,20 @@ glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t) {
 }
 
 BodyShells weld_triangles(const Scene& scene, std::uint32_t material) {
+    return weld_triangles(scene, only(scene, material));
+}
+
+BodyShells weld_triangles(const Scene& scene, const std::vector<bool>& chosen) {
     BodyShells body;
     std::unordered_map<glm::vec3, std::uint32_t, PositionHash> places;
     std::size_t vertices = 0;
     for (const Primitive& primitive : scene.primitives) {
-        vertices += primitive.material == material ? primitive.position.size() : 0;
+        vertices += chosen[primitive.material] ? primitive.position.size() : 0;
     }
     places.reserve(vertices);
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
         const Primitive& primitive = scene.primitives[p];
-        if (primitive.material != material) {
+        if (!chosen[primitive.material]) {
             continue;
         }
         for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
@@ -185,7 +201,11 @@ BodyShells weld_triangles(const Scene& scene, std::uint32_t material) {
 }
 
 BodyShells make_body_shells(const Scene& scene, std::uint32_t material) {
-    BodyShells body = weld_triangles(scene, material);
+    return make_body_shells(scene, only(scene, material));
+}
+
+BodyShells make_body_shells(const Scene& scene, const std::vector<bool>& chosen) {
+    BodyShells body = weld_triangles(scene, chosen);
     cut_into_shells(body);
     return body;
 }

@@ -19,10 +19,16 @@ namespace {
 // acts inside media is.
 PlanEntry decide(const PlanInput& input) {
     PlanEntry entry;
-    // Under `white` a diffuse surface reflects at most its albedo.
+    // Under `white` a diffuse surface reflects at most its albedo; a metal mirrors at most that of
+    // what others send, from the part of the sky that they stand before.
     const formats::Rgb c = input.material.base_color;
-    entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex *
-                                      formats::diffuse_share(input.material));
+    const bool is_metal = formats::is_metal(input.material);
+    const double elevation = input.subject.horizon.elevation;
+    entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex);
+    entry.bound *= !is_metal ? static_cast<double>(formats::diffuse_share(input.material))
+                   : is_wanted(input.knobs, "interreflection")
+                       ? std::min(1.0, elevation * elevation) * input.subject.surroundings.brightest
+                       : 0;
     entry.alternative = input.material.medium.has_value();
     if (entry.alternative && (!is_named(input.knobs, "direct") || input.knobs.looks_inside_media)) {
         entry.bound = 0;
@@ -30,13 +36,13 @@ PlanEntry decide(const PlanInput& input) {
     } else if (!is_wanted(input.knobs, "direct")) {
         entry.reason = "left out by --effects";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
-        entry.reason = formats::diffuse_share(input.material) > 0
-                           ? "the base colour is black, or nearly: nothing is reflected"
-                           : "a metal reflects nothing diffusely";
+        entry.reason = is_metal ? "a metal reflects nothing diffusely"
+                                : "the base colour is black, or nearly: nothing is reflected";
     } else {
         entry.reason = entry.alternative
                            ? "the medium is shown as a diffuse surface of the same reflectance"
-                           : "the surface reflects diffusely";
+                       : is_metal ? "the metal mirrors what other surfaces send to it"
+                                  : "the surface reflects diffusely";
     }
     entry.as_surface = entry.on && entry.alternative;
     return entry;
@@ -75,6 +81,10 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     return directions;
 }
 
+bool is_of_metal(const EffectInputs& inputs) {
+    return formats::is_metal(inputs.bake.scene.materials[inputs.material]);
+}
+
 // T = V max(0, n.w) / pi: albedo 1.
 std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiver,
                               const DenseRow& row) {
@@ -97,7 +107,7 @@ std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiv
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     constexpr float kShare = std::numbers::inv_pi_v<float>;
     std::uint64_t rays = 0;
-    if (inputs.bake.has_environment()) {
+    if (inputs.bake.has_environment() && !is_of_metal(inputs)) {
         rays += add_environment(inputs, receiver.outside, row);
     }
     return rays +
@@ -120,6 +130,10 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
     TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
+    if (is_of_metal(inputs)) {
+        std::ranges::fill(seen.first, 0.0);
+        std::ranges::fill(seen.second, 0.0);
+    }
     rays += add_true_other_light(own.other, receiver.outside, receiver.key, 1, seen);
     return seen;
 }
