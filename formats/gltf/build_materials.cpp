@@ -225,12 +225,14 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         const std::string where = label("material", i, source.name);
         Material material = convert(source, where, report);
         std::vector<std::string> remarks;
+        std::optional<float> mirror_ior;
         if (const auto thin = map_sheet(source.translucency, material.base_color,
                                         source.base_color_texture.texture != kNone, remarks)) {
             material.sheet = thin->sheet;
             material.sheet->opaque_color = material.base_color;
             material.sheet->opaque_double_sided = material.double_sided;
             material.base_color = thin->base_color;
+            mirror_ior = thin->mirror_ior;
             material.double_sided = true;  // it has two sides
         } else {
             material.medium = map_medium(source.translucency, metres_per_unit, remarks);
@@ -240,6 +242,7 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         }
         if (material.sheet) {
             material.sheet->opaque_metallic = material.gloss.metallic;
+            material.gloss.ior = mirror_ior.value_or(material.gloss.ior);
         }
         if (used[i]) {
             add_textures(source, where, loader, material, remarks);

@@ -136,6 +136,9 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
         add(kHoleSection, Codec::zstd,
             Arrays{bytes_of(heads.holes), std::as_bytes(asset.holes.record),
                    std::as_bytes(asset.holes.vertex_alpha)});
+        const bool has_glass = std::ranges::any_of(
+            asset.holes.record, [](const HoleRecord& h) { return h.clear != 0; });
+        sections.back().entry.version = has_glass ? kClearHolesVersion : 1;
     }
     if (!asset.normal_maps.empty()) {
         add(kNormSection, Codec::zstd,

@@ -74,7 +74,7 @@ const Draw = (() => {
         own_light: own ? own.radiance.map((x, k) => x * colors[own.emitter][k]) : [0, 0, 0],
         own_wrap: own?.wrap ?? [0, 0],
         hole: hole ? [hole.alpha, hole.cutoff, hole.mode] : [1, 0, 1],
-        hole_wrap: hole?.wrap ?? [0, 0],
+        hole_wrap: hole?.wrap ?? [0, 0], hole_clear: hole?.clear ?? [0, 0],
         normal_wrap: normalMap?.wrap ?? [0, 0], normal_scale: normalMap?.scale ?? 1 };
     }
 
@@ -97,11 +97,14 @@ const Draw = (() => {
         first_sample: [grid.firstColumn, grid.firstRow] };
       gl.enable(gl.DEPTH_TEST);
       gl.bindVertexArray(objects.array);
+      gl.frontFace(gl.CW);  // y points down
       for (const { primitive, program } of objects.surfaces) {
+        (primitive.showsBack ? gl.disable : gl.enable).call(gl, gl.CULL_FACE);
         gl.useProgram(program.name);
         setUniforms(gl, program, { ...shared, ...lit.turnedOf(primitive), ...surfaceUniforms(primitive, colors) });
         gl.drawElements(gl.TRIANGLES, primitive.indices, gl.UNSIGNED_INT, 4 * primitive.firstIndex);
       }
+      gl.disable(gl.CULL_FACE);
       gl.bindVertexArray(null);
       gl.disable(gl.DEPTH_TEST);
     }

@@ -297,5 +297,23 @@ TEST(Picture, ImpossibleRequestsAreRefused) {
     EXPECT_FALSE(refuses(camera_at({0, 0, 1}, {0, 0, 0}, 5, 5, 40), 3));
 }
 
+TEST(Surfaces, OfOneSideAreNotDrawnFromBehind) {
+    for (const bool is_double_sided : {false, true}) {
+        Asset asset = test::make_asset(8, 8);
+        test::add_primitive(asset, test::make_sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 1),
+                            {.is_double_sided = is_double_sided});
+        const std::vector<Rgb> red(asset.position.size(), Rgb{1, 0, 0});
+        asset.base_color.assign(asset.position.size(), Rgb{1, 1, 1});
+        const Environment green = test::make_lat_long(8, 4, [](Vec3) { return Rgb{0, 1, 0}; });
+        for (const float side : {1.0f, -1.0f}) {
+            const Picture picture =
+                draw(asset, red, green, camera_at({0, 0, 3 * side}, {0, 0, 0}, 5, 5, 20));
+            const bool is_seen = is_double_sided || side > 0;
+            EXPECT_EQ(at(picture, 2, 2), (is_seen ? Rgb{1, 0, 0} : Rgb{0, 1, 0}))
+                << is_double_sided << side;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace opaline::runtime
