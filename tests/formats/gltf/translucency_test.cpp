@@ -233,7 +233,7 @@ TEST(GltfTranslucency, TransmissionWithoutVolumeIsThinGlassThatLightPassesStraig
     surface["roughnessFactor"] = 0;
     const auto imported = must_import(pane);
     const formats::Material& clear = imported.scene.materials[0];
-    EXPECT_EQ(lines(imported.warnings), "");
+    EXPECT_THAT(lines(imported.warnings), Not(HasSubstr("not simulated")));
     EXPECT_FALSE(clear.medium);
     ASSERT_TRUE(clear.sheet);
     EXPECT_TRUE(clear.double_sided);
