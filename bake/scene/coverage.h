@@ -17,6 +17,13 @@ inline bool is_clear(const formats::Material& material) {
     return material.sheet && material.sheet->clear > 0;
 }
 
+/// Whether a material is opaque and lit and seen on both sides: a sheet that reflects all of its
+/// base colour.
+inline bool is_wall(const formats::Material& material) {
+    return material.sheet && material.sheet->reflect == formats::Rgb{1, 1, 1} &&
+           material.sheet->transmit == formats::Rgb{};
+}
+
 /// Whether light passes a material's surfaces straight: parts of them are not there
 /// (Material::alpha_mode), or are clear.
 inline bool has_holes(const formats::Material& material) {

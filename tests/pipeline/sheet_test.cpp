@@ -189,6 +189,7 @@ TEST(Sheet, ADoubleSidedOpaqueWallShowsOnEachSideTheLightThatFallsThere) {
         BakeOptions options = tests::small_bake();
         options.effects = {"direct"};
         const BakeResult baked = tests::bake_scene(scene, options);
+        EXPECT_TRUE(find_entry(baked.plan, "direct", 0)->on);
         for (const Rgb c : seen_from(baked.asset, {0, 3, 0}, "sun:40,30")) {
             EXPECT_NEAR(c.g, 0.25f, 0.1f) << turned;
         }

@@ -7,7 +7,9 @@
 
 #include "bake/plan/add_other_light.h"
 #include "bake/plan/walk_work.h"
+#include "bake/receivers/other_side.h"
 #include "bake/scattering/half_space_medium.h"
+#include "bake/scene/coverage.h"
 #include "bake/transport/irradiance_transport.h"
 #include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
@@ -23,7 +25,8 @@ PlanEntry decide(const PlanInput& input) {
     // what others send, from the part of the sky that they stand before.
     const formats::Rgb c = input.material.base_color;
     const bool is_metal = formats::is_metal(input.material);
-    const double elevation = input.subject.horizon.elevation;
+    // What rises above the horizon of a wall's back is not known.
+    const double elevation = input.material.sheet ? 1 : input.subject.horizon.elevation;
     entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex);
     entry.bound *= !is_metal ? static_cast<double>(formats::diffuse_share(input.material))
                    : is_wanted(input.knobs, "interreflection")
@@ -56,7 +59,9 @@ void lay_out(const PlanEntry& entry, RowLayout& layout) {
 }
 
 constexpr std::array<DecisionRule, 1> kRules{
-    {{"direct", [](const PlanInput& input) { return !is_thin_walled(input); }, decide, lay_out}}};
+    {{"direct",
+      [](const PlanInput& input) { return !is_thin_walled(input) || is_wall(input.material); },
+      decide, lay_out}}};
 
 // The reflectance of the medium that is shown as a surface.
 struct Albedo : Prepared {
@@ -85,9 +90,9 @@ bool is_of_metal(const EffectInputs& inputs) {
     return formats::is_metal(inputs.bake.scene.materials[inputs.material]);
 }
 
-// T = V max(0, n.w) / pi: albedo 1.
+// T = V max(0, n.w) / pi: albedo 1. `term`: 0, or 1 of the other side of a wall.
 std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiver,
-                              const DenseRow& row) {
+                              std::uint32_t term, const DenseRow& row) {
     const auto& directions = static_cast<const Directions&>(*inputs.own.prepared).set;
     std::vector<float> dense(row.size());
     const std::uint64_t rays = gather_irradiance(inputs.outside(), directions, receiver, dense);
@@ -96,7 +101,7 @@ std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiv
     }
     formats::haar_forward_cube(std::span<float>(dense), row.cubemap_size);
     for (std::uint32_t band = 0; band < row.bands; ++band) {
-        const std::span<float> to = row.plane(0, band);
+        const std::span<float> to = row.plane(term, band);
         for (std::size_t k = 0; k < dense.size(); ++k) {
             to[k] += dense[k];
         }
@@ -104,14 +109,27 @@ std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiv
     return rays;
 }
 
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+std::uint64_t add_side(const EffectInputs& inputs, const Receiver& receiver, std::uint32_t term,
+                       const DenseRow& row) {
     constexpr float kShare = std::numbers::inv_pi_v<float>;
     std::uint64_t rays = 0;
     if (inputs.bake.has_environment() && !is_of_metal(inputs)) {
-        rays += add_environment(inputs, receiver.outside, row);
+        rays += add_environment(inputs, receiver, term, row);
     }
     return rays +
-           add_other_light(inputs.light(), receiver.outside, {{0, {kShare, kShare, kShare}}}, row);
+           add_other_light(inputs.light(), receiver, {{term, {kShare, kShare, kShare}}}, row);
+}
+
+bool has_two_sides(const EffectInputs& inputs) {
+    return inputs.bake.scene.materials[inputs.material].sheet.has_value();
+}
+
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+    std::uint64_t rays = add_side(inputs, receiver.outside, 0, row);
+    if (has_two_sides(inputs)) {
+        rays += add_side(inputs, other_side(receiver.outside, receiver.inside), 1, row);
+    }
+    return rays;
 }
 
 struct Truth : Prepared {
@@ -129,12 +147,15 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const 
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
-    TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
+    const bool is_behind = has_two_sides(inputs) && receiver.behind;
+    const Receiver at =
+        is_behind ? other_side(receiver.outside, receiver.inside) : receiver.outside;
+    TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, at, rays);
     if (is_of_metal(inputs)) {
         std::ranges::fill(seen.first, 0.0);
         std::ranges::fill(seen.second, 0.0);
     }
-    rays += add_true_other_light(own.other, receiver.outside, receiver.key, 1, seen);
+    rays += add_true_other_light(own.other, at, receiver.key, 1, seen);
     return seen;
 }
 
@@ -155,7 +176,8 @@ EffectDescriptor describe_direct(Effect id) {
         .gather = {.add = add,
                    .work =
                        [](const SubjectCost& c) {
-                           return irradiance_work(c.input, c.receivers, c.layout.occluded);
+                           const double sides = c.layout.sheet ? 2 : 1;
+                           return irradiance_work(c.input, sides * c.receivers, c.layout.occluded);
                        }},
         .truth = {.reference = "rays to the suns, and to all else four a texel of 6 x 64 x 64",
                   .make = make_truth,

@@ -8,6 +8,7 @@
 
 #include "bake/plan/add_other_light.h"
 #include "bake/receivers/other_side.h"
+#include "bake/scene/coverage.h"
 #include "bake/transport/irradiance_transport.h"
 #include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
@@ -21,30 +22,25 @@ PlanEntry decide(const PlanInput& input) {
     const formats::Sheet& sheet = *input.material.sheet;
     const formats::Rgb seen = input.material.base_color * (sheet.reflect + sheet.transmit);
     entry.bound =
-        static_cast<double>(std::max({seen.r, seen.g, seen.b}) * input.subject.brightest_vertex);
-    const bool is_metal = formats::is_metal(input.material);
-    entry.bound *= !is_metal ? static_cast<double>(formats::diffuse_share(input.material))
-                   : is_wanted(input.knobs, "interreflection")
-                       ? input.subject.surroundings.brightest
-                       : 0;
+        static_cast<double>(std::max({seen.r, seen.g, seen.b}) * input.subject.brightest_vertex *
+                            formats::diffuse_share(input.material));
     entry.has_bands = true;
-    const bool is_opaque = sheet.transmit == formats::Rgb{};
-    if (!is_wanted(input.knobs, "sheet") && !(is_opaque && is_wanted(input.knobs, "direct"))) {
+    if (!is_wanted(input.knobs, "sheet")) {
         entry.reason = "left out by --effects";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
         entry.reason = sheet.clear > 0 ? "the glass scatters nothing, or nearly"
                                        : "the thin-walled surface scatters nothing, or nearly";
     } else {
-        entry.reason = is_metal    ? "the metal mirrors what other surfaces send to it"
-                       : is_opaque ? "the surface reflects diffusely on both of its sides"
-                                   : "the thin-walled surface scatters light to both of its sides";
+        entry.reason = "the thin-walled surface scatters light to both of its sides";
     }
     return entry;
 }
 
 constexpr std::array<DecisionRule, 1> kRules{
-    {{"sheet", is_thin_walled, decide, [](const PlanEntry& entry, RowLayout& layout) {
-          layout.sheet = true;
+    {{"sheet",
+      [](const PlanInput& input) { return is_thin_walled(input) && !is_wall(input.material); },
+      decide,
+      [](const PlanEntry& entry, RowLayout& layout) {
           layout.constant = layout.constant || entry.on;
       }}}};
 
@@ -63,12 +59,6 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
 const formats::Sheet& sheet_of(const EffectInputs& inputs) {
     return *inputs.bake.scene.materials[inputs.material].sheet;
 }
-
-// Each side of a metal has a row of what others send to it.
-bool is_of_metal(const EffectInputs& inputs) {
-    return formats::is_metal(inputs.bake.scene.materials[inputs.material]);
-}
-constexpr formats::Sheet kTwoSides{};
 
 // What stands for a colour in one band of a row.
 float in_band(formats::Rgb c, std::uint32_t band, std::uint32_t bands) {
@@ -109,10 +99,8 @@ OtherLightShare share_of(formats::Rgb c, std::uint32_t term, std::uint32_t bands
 }
 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
-    const bool is_metal = is_of_metal(inputs);
-    std::uint64_t rays =
-        inputs.bake.has_environment() && !is_metal ? add_environment(inputs, receiver, row) : 0;
-    const formats::Sheet& sheet = is_metal ? kTwoSides : sheet_of(inputs);
+    std::uint64_t rays = inputs.bake.has_environment() ? add_environment(inputs, receiver, row) : 0;
+    const formats::Sheet& sheet = sheet_of(inputs);
     const auto share = [&](formats::Rgb c, std::uint32_t term) {
         return share_of(c, term, row.bands);
     };
@@ -138,8 +126,7 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const 
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
-    const bool is_metal = is_of_metal(inputs);
-    const formats::Sheet& sheet = is_metal ? kTwoSides : sheet_of(inputs);
+    const formats::Sheet& sheet = sheet_of(inputs);
     TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
     const TwoEstimates through = eval_reflection(
         own.truth, inputs.bake.rays, other_side(receiver.outside, receiver.inside), rays);
@@ -149,8 +136,8 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
         std::swap(r, t);
     }
     for (std::size_t l = 0; l < seen.first.size(); ++l) {
-        seen.first[l] = is_metal ? 0 : r * seen.first[l] + t * through.first[l];
-        seen.second[l] = is_metal ? 0 : r * seen.second[l] + t * through.second[l];
+        seen.first[l] = r * seen.first[l] + t * through.first[l];
+        seen.second[l] = r * seen.second[l] + t * through.second[l];
     }
     const std::uint64_t key = 2 * std::uint64_t{receiver.key};
     rays += add_true_other_light(own.other, receiver.outside, key, r, seen);
