@@ -143,6 +143,7 @@ TEST(Surfaces, PlaneThroughTheEyesFeetIsSeenInExactPerspective) {
 TEST(Surfaces, ClosedMeshSeenFromInsideHasNoHoles) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 0, 0}, 1.0f, 37, 23));
+    asset.primitives[0].flags = formats::PrimitiveRecord::kDoubleSided;
     asset.base_color.assign(asset.position.size(), {1, 1, 1});
     const std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
     const Picture picture =
@@ -211,7 +212,7 @@ TEST(Surfaces, TextureIsFilteredInLinearLight) {
     Asset asset = test::make_asset(8, 8);
     asset.images.push_back(test::make_noise_image(5, 7));
     test::add_primitive(asset, test::make_sheet({0, 0, 0}, {1, 0, 0}, {0, -1, 0}, 1, 1.7f),
-                        {1, 4, 0, formats::Wrap::mirror, formats::Wrap::repeat});
+                        {1, 4, 0, formats::Wrap::mirror, formats::Wrap::repeat, 0, 1, true});
     asset.base_color.assign(asset.position.size(), {1, 1, 1});
     const std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
     Camera camera = camera_at({0, 0, 2}, {0, 0, 0}, 64, 64, 0);
