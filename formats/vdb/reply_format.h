@@ -11,6 +11,7 @@
 ///     grid:   u32 tag, text name, GridHead, then its bricks in ascending order of place, each
 ///             u32 place (index into the table) and 512 values of 1 or 3 floats
 ///     fault:  u32 tag, three texts
+///     end:    u32 tag, u32 number of names (at most kMaxGrids), the names of grids not read
 ///     text:   u32 number of bytes, bytes
 namespace opaline::formats::vdb {
 
