@@ -59,15 +59,16 @@ formats::Status add_media(const formats::MediaFile& media, double metres_per_uni
 
 // A volume alone, with what the media file says of it.
 formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& path,
-                                                 double metres_per_unit,
+                                                 const formats::ImportOptions& options,
                                                  const std::filesystem::path& media) {
     formats::MediaFile none;
     none.file = path.string();
-    auto file = media.empty() ? std::move(none) : formats::read_media(media);
+    auto file =
+        media.empty() ? std::move(none) : formats::read_media(media, options.allowed_folders);
     if (!file) {
         return std::move(file).error();
     }
-    auto imported = formats::import_vdb(path, *file, metres_per_unit);
+    auto imported = formats::import_vdb(path, *file, options.metres_per_unit);
     if (imported) {
         if (auto status = fill_materials(*file, *imported); !status) {
             return std::move(status).error();
@@ -81,8 +82,8 @@ formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& pa
 
 // The volumes and the cloud layer of a media file, without any surface.
 formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::path& path,
-                                                         double metres_per_unit) {
-    const auto file = formats::read_media(path);
+                                                         const formats::ImportOptions& options) {
+    const auto file = formats::read_media(path, options.allowed_folders);
     if (!file) {
         return file.error();
     }
@@ -93,7 +94,7 @@ formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::
     formats::ImportedScene imported;
     imported.scene.source = path.string();
     imported.scene.materials.resize(1);
-    if (auto status = add_media(*file, metres_per_unit, imported); !status) {
+    if (auto status = add_media(*file, options.metres_per_unit, imported); !status) {
         return std::move(status).error();
     }
     return imported;
@@ -108,7 +109,8 @@ formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& p
     }
     // The file on the command line comes last and overrides the scene's media.
     if (!imported->media.empty()) {
-        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media");
+        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media",
+                                              options.allowed_folders);
         if (!own) {
             return own.error();
         }
@@ -117,7 +119,7 @@ formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& p
         }
     }
     if (!media.empty()) {
-        const auto file = formats::read_media(media);
+        const auto file = formats::read_media(media, options.allowed_folders);
         if (!file) {
             return file.error();
         }
@@ -150,8 +152,8 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
         return make_error(ErrorKind::usage, media.string(), "--media",
                           "the scene is a media file itself", "join both in one file");
     }
-    auto imported = ending == ".vdb"    ? open_vdb(path, options.metres_per_unit, media)
-                    : ending == ".json" ? open_media_scene(path, options.metres_per_unit)
+    auto imported = ending == ".vdb"    ? open_vdb(path, options, media)
+                    : ending == ".json" ? open_media_scene(path, options)
                                         : open_gltf(path, options, media);
     if (!imported) {
         return imported;

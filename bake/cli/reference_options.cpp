@@ -131,6 +131,7 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options) {
                     "what translucent materials are made of; volumes of smoke or cloud")
         ->check(file_name())
         ->option_text("FILE.json");
+    add_allow_path_option(command, options.allowed_folders);
     command
         .add_option("--metres-per-unit", options.metres_per_unit,
                     "length of one unit of the scene file")

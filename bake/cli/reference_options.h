@@ -16,6 +16,7 @@ namespace opaline::cli {
 /// Of `opaline reference`, as its help says; 0: not given.
 struct ReferenceOptions {
     std::string scene, media, light, output, terms, texture_filter = "none";
+    std::vector<std::string> allowed_folders;
     CameraOptions camera;
     PathIntegrationOptions paths;
     double metres_per_unit = 1, rotate_light = 0, seconds = 0;

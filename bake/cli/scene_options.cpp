@@ -84,6 +84,17 @@ void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOp
 
 }  // namespace
 
+void add_allow_path_option(CLI::App& command, std::vector<std::string>& folders) {
+    command
+        .add_option("--allow-path", folders,
+                    "folder whose files the scene and its media may name too, besides those in "
+                    "their own folders; may be repeated")
+        ->check(CLI::ExistingDirectory)
+        ->take_all()
+        ->allow_extra_args(false)
+        ->option_text("DIR");
+}
+
 void add_subject_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option("scene", options.scene,
@@ -97,6 +108,7 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
             "what translucent materials are made of; formats/media/README.md lists the keys")
         ->check(file_name())
         ->option_text("FILE.json");
+    add_allow_path_option(command, options.allowed_folders);
     command
         .add_option(
             "--effects", options.effects,
@@ -181,7 +193,11 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     const auto check_size = [&](const formats::SceneCounts& counts) {
         return check(bake::count_memory(counts));
     };
-    auto imported = open_scene(options.scene, {options.metres_per_unit, check_size}, options.media);
+    auto imported = open_scene(options.scene,
+                               {options.metres_per_unit,
+                                {options.allowed_folders.begin(), options.allowed_folders.end()},
+                                check_size},
+                               options.media);
     if (!imported) {
         return imported;
     }

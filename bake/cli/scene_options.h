@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "bake/plan/bake_plan.h"
 #include "formats/gltf/import_gltf.h"
@@ -15,11 +16,15 @@ inline constexpr double kLeastUnit = 1e-10, kMostUnit = 1e16;
 /// Options common to `bake`, `plan` and `sweep`.
 struct SceneOptions {
     std::string scene, media;
+    std::vector<std::string> allowed_folders;
     double metres_per_unit = 1.0;
     std::string effects = "auto";
     std::uint64_t memory_limit = 0;  ///< [bytes]; 0: what the machine has
     bake::BakeOptions bake;
 };
+
+/// `--allow-path`, as often as wanted.
+void add_allow_path_option(CLI::App& command, std::vector<std::string>& folders);
 
 /// The scene, its media, and options without influence on accuracy: effects, seed, threads, unit.
 void add_subject_options(CLI::App& command, SceneOptions& options);

@@ -45,6 +45,7 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     }
     Resources resources;
     resources.folder = path.parent_path();
+    resources.allowed = options.allowed_folders;
     resources.inputs.push_back(path);
     const Bytes bytes = resources.keep(std::move(*file));
     resources.hash.add(bytes);

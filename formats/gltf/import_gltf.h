@@ -13,6 +13,8 @@ namespace opaline::formats {
 /// Options of the import.
 struct ImportOptions {
     double metres_per_unit = 1.0;  ///< length of one file unit [m]; finite and > 0
+    /// Folders besides the file's own that may hold its buffers and textures.
+    std::vector<std::filesystem::path> allowed_folders = {};
     /// Asked before anything is built that grows with the number of instances; an error of it is
     /// the import's. Empty: any size will do.
     std::function<Status(const SceneCounts&)> check_size = {};
