@@ -29,6 +29,7 @@ struct BakeCommand {
     SceneOptions scene;
     std::string output, report, depfile;
     bool verbose = false;
+    formats::Compression compression = formats::Compression::fast;
     bake::BakeExtras extras;
     ProgressStyle progress = ProgressStyle::automatic;
 };
@@ -212,8 +213,8 @@ int run(const BakeCommand& options) {
         return report_error(status.error());
     }
     formats::AtomicFile& file = files.back();
-    if (auto status =
-            formats::write_opal_bytes(result->asset.view(), file, result->receiver_errors);
+    if (auto status = formats::write_opal_bytes(result->asset.view(), file, result->receiver_errors,
+                                                options.compression);
         !status) {
         return report_error(status.error());
     }
@@ -270,6 +271,15 @@ void add_bake_command(CLI::App& app, Job& job) {
         "also store how far the rows of each vertex are from those before coefficients were "
         "dropped and rounded (4 bytes a vertex): a map of it is shown by `view` and `render "
         "--receiver-errors`");
+    command
+        ->add_option("--compression", options->compression,
+                     "of the file: fast or best (slow to write) take a third to a half of the "
+                     "bytes, which a program decodes as it loads them; rows of none are used in "
+                     "place. Predicted sizes are those of none")
+        ->transform(one_of<formats::Compression>({{"none", formats::Compression::none},
+                                                  {"fast", formats::Compression::fast},
+                                                  {"best", formats::Compression::best}}))
+        ->option_text("none|fast|best [fast]");
     command->add_flag("--verbose", options->verbose,
                       "also print what is simulated and why, and what each stage took");
     add_progress_option(*command, options->progress);

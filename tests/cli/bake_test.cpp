@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -183,8 +186,8 @@ double seconds_of(const Json& report, const std::string& name) {
 TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     SmallScene small;
     const TemporaryFolder cache;
-    ASSERT_TRUE(bake::write_rates(cache / "opaline/calibration.json", bake::this_machine(),
-                                  make_rates()));
+    ASSERT_TRUE(
+        bake::write_rates(cache / "opaline/calibration.json", bake::this_machine(), make_rates()));
     double seconds[2] = {};
     for (const int i : {0, 1}) {
         const std::string report = small.path("r" + std::to_string(i) + ".json");
@@ -213,6 +216,26 @@ TEST(Bake, AnyNumberOfThreadsWritesTheSameBytes) {
         EXPECT_EQ(bytes, first) << threads;
     }
     EXPECT_GT(first.size(), 10000u);
+}
+
+TEST(Bake, CompressionChangesTheSizeOfTheFileAndNoLight) {
+    SmallScene small;
+    std::map<std::string, std::uintmax_t> size;
+    std::string light;
+    for (const std::string compression : {"none", "fast", "best"}) {
+        const std::string out = small.path(compression + ".opal");
+        const Outcome bake = run_opaline(
+            {"bake", small.scene(), "-o", out, "--quality", "draft", "--compression", compression});
+        ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        size[compression] = std::filesystem::file_size(out);
+        EXPECT_EQ(run_opaline({"verify", out}).exit_code, 0);
+        const std::string table = small.path("light.csv");
+        ASSERT_EQ(run_opaline({"relight", out, "--light", "studio", "-o", table}).exit_code, 0);
+        if (light.empty()) light = read_text(table);
+        EXPECT_EQ(read_text(table), light);
+    }
+    EXPECT_LT(size["fast"], size["none"]);
+    EXPECT_LE(size["best"], size["fast"]);
 }
 
 TEST(Bake, SameBytesWhereverTheSceneLies) {
