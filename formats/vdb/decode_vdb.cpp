@@ -203,7 +203,7 @@ std::optional<Fault> decode_vdb(const std::string& path, std::span<const std::st
         for (std::size_t i = 0; i < selected.size(); ++i) {
             const std::string& name = names.empty() ? selected[i]->name : names[i];
             std::optional<Fault> fault = pack_grid(name, *selected[i], file, budget, reply);
-            if (fault && !names.empty()) return fault;
+            if (fault && (!names.empty() || !fault->is_of_values)) return fault;
             is_any_read = is_any_read || !fault;
             if (fault) {  // velocities and shadows are no densities
                 unread.push_back(name);

@@ -84,7 +84,7 @@ class Packer {
                              BrickBudget& budget, ReplyWriter& reply) {
         if (tree.background() != openvdb::zeroVal<Value>()) {
             return Fault{"", "its background is not 0: it fills all of space",
-                         "write it as a fog volume with background 0"};
+                         "write it as a fog volume with background 0", true};
         }
         brick_limit_ = budget.bricks;
         float largest = 0;
@@ -95,6 +95,7 @@ class Packer {
         list_leaves(tree);
         list_tiles(tree);
         std::optional<Fault> fault = check_values();
+        if (fault) fault->is_of_values = true;
         if (!fault) fault = check_places();
         if (!fault) fault = place_table(head, budget);
         if (fault) {

@@ -31,6 +31,7 @@ static_assert(std::is_trivially_copyable_v<GridHead> && sizeof(GridHead) == 184)
 /// Why a file cannot be used; the parts of a Diagnostic.
 struct Fault {
     std::string where, fault, remedy;
+    bool is_of_values = false;  ///< a grid that is read, but is no density; not sent
 };
 
 }  // namespace opaline::formats::vdb
