@@ -69,7 +69,7 @@ bool is_folded(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
             return true;
         }
         reach -= hit->distance;
-        from = leave_surface(*hit, down);
+        from = go_straight_on(from, leave_surface(*hit, down));
     }
     return false;
 }

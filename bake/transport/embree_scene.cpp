@@ -108,7 +108,8 @@ EmbreeScene::~EmbreeScene() {
     }
 }
 
-formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned threads) {
+formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned threads,
+                                                bool filters) {
     EmbreeScene built;
     const auto failed = [&](const char* what) {
         return formats::make_error(ErrorKind::resource, scene.source, "ray tracer", what,
@@ -119,7 +120,9 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
         return failed("the Embree device cannot be made");
     }
     built.scene_ = rtcNewScene(built.device_);
-    rtcSetSceneFlags(built.scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(built.scene_,
+                     filters ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
+                             : RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(built.scene_, RTC_BUILD_QUALITY_HIGH);
     CoverageImages images;
     for (std::uint32_t number = 0; number < scene.primitives.size(); ++number) {
