@@ -25,7 +25,8 @@ struct VolumeErrorReport {
     std::uint64_t samples = 0;  ///< paths traced, of all rays
     std::uint64_t events = 0;   ///< scatterings and surfaces that they met
     std::string reference;      ///< the reference, in words
-    /// Under lights of one LightPlace, relative to the RMS of the truth under these.
+    /// Under lights of one LightPlace, relative to the RMS of the truth under these, or to a tenth
+    /// of that under even light where this is more.
     struct Part {
         std::string name;
         double rms_relative = 0;
