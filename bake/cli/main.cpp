@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -105,6 +106,8 @@ int main(int argc, char** argv) {
     if (opaline::formats::is_vdb_request(argc, argv)) {
         opaline::formats::answer_vdb_request(argc, argv);
     }
+    // A write past the limit of file sizes fails as one to a full disk does.
+    std::signal(SIGXFSZ, SIG_IGN);
     try {
         return opaline::cli::run_program(argc, argv);
     } catch (const std::bad_alloc&) {

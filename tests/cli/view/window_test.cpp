@@ -231,8 +231,11 @@ TEST(View, FaultsOfAScriptNameItsLines) {
         view_with(small, "wait-frames 2\nload none.opal\nscreenshot a.png\nquit\n", {file});
     if (outcome.exit_code == kNoDisplay) GTEST_SKIP() << "no Xvfb";
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("script.txt line 3"));
+    EXPECT_THAT(outcome.err, HasSubstr("script.txt line 2"));
     EXPECT_THAT(outcome.err, HasSubstr("none.opal"));
+    const Outcome last = view_with(small, "load /dev/zero\nquit\n", {file});
+    EXPECT_EQ(last.exit_code, 3) << last.err;
+    EXPECT_THAT(last.err, HasSubstr("script.txt line 1"));
 }
 
 }  // namespace
