@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -99,6 +100,30 @@ int run_program(int argc, char** argv) {
     return code;
 }
 
+int run_guarded(int argc, char** argv) {
+    try {
+        return run_program(argc, argv);
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
+    } catch (const std::system_error& error) {
+        fmt::print(stderr, "opaline: error: {}\n", printable(error.what()));
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
+                   printable(error.what()));
+    }
+    return kExitResource;
+}
+
+// Everything of ours is written and destroyed. Libraries' statics are left alone: OpenVDB brings a
+// logger that starts four threads when it is loaded, and these race with its destruction.
+int end_program(int code) {
+    std::fflush(stdout);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they report at the end
+    std::_Exit(code);
+#endif
+    return code;
+}
+
 }  // namespace
 }  // namespace opaline::cli
 
@@ -108,15 +133,5 @@ int main(int argc, char** argv) {
     }
     // A write past the limit of file sizes fails as one to a full disk does.
     std::signal(SIGXFSZ, SIG_IGN);
-    try {
-        return opaline::cli::run_program(argc, argv);
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
-    } catch (const std::system_error& error) {
-        fmt::print(stderr, "opaline: error: {}\n", opaline::cli::printable(error.what()));
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
-                   opaline::cli::printable(error.what()));
-    }
-    return opaline::cli::kExitResource;
+    return opaline::cli::end_program(opaline::cli::run_guarded(argc, argv));
 }
