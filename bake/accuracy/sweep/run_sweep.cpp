@@ -289,12 +289,21 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     if (has_receivers(scene)) {
         ReferenceLadderOptions climb;
         climb.seconds = kShare * options.seconds;
+        climb.most_seconds = std::max(0.0, 0.5 * sweep.left());
         climb.seed = options.bake.seed;
         auto reference = climb_reference(scene, climb, context);
         if (!reference) {
             return std::move(reference).error();
         }
         result.reference = std::move(*reference);
+        if (!result.reference) {
+            result.skipped.push_back(
+                {{"ladder of the Monte Carlo reference", {}, *draft},
+                 0,
+                 0,
+                 "no light reaches the receivers, or its first rungs would take more than half of "
+                 "the time that was left"});
+        }
         auto paths = trace_for(scene, sweep.view.model,
                                {.seconds = kShare * options.seconds,
                                 .seed = options.bake.seed,

@@ -40,7 +40,7 @@ struct SweepResult {
     std::vector<PointRecord> points;     ///< in the order in which they were baked
     /// index of the finest point of the choices that most points made (find_finest)
     std::size_t truth = 0;
-    std::optional<ReferenceLadder> reference;  ///< nothing: no light
+    std::optional<ReferenceLadder> reference;  ///< nothing: no light, or no time
     std::vector<SkippedPoint> skipped;
     std::vector<std::string> lights;
     std::string picture_light;
