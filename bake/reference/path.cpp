@@ -292,8 +292,11 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
         walks = reflect_at_surface(space, path, point, random);
     } else {
         Crossing crossing;
-        crossing.beyond = path.stack;
-        crossing.beyond.enter(receiver.medium);
+        crossing.beyond = receiver.within;
+        if (receiver.within.empty()) {
+            crossing.beyond = path.stack;
+            crossing.beyond.enter(receiver.medium);
+        }
         const float ratio =
             space.scene.media[receiver.medium].eta / index_of(space.scene, path.stack);
         crossing.split = split_at_boundary(path.direction, normal, ratio);
