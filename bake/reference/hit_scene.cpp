@@ -84,7 +84,11 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
     rtcInitIntersectContext(&context.embree);
     // A straight line leaves a plane once; rounding causes a second hit.
     context.embree.filter = origin.triangles > 0 ? pass_own_triangles : nullptr;
-    RTCRayHit ray{make_ray(origin, direction, origin.free, reach, key), {}};
+    // Nor does it meet the triangles beside it where it starts on an edge.
+    const float nearest = origin.triangles > 0
+                              ? std::max(origin.free, std::numeric_limits<float>::min())
+                              : origin.free;
+    RTCRayHit ray{make_ray(origin, direction, nearest, reach, key), {}};
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(triangles_.handle(), &context.embree, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
