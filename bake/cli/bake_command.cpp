@@ -137,16 +137,11 @@ formats::Status commit_all(std::vector<formats::AtomicFile>& files) {
     return formats::ok_status();
 }
 
-// Predicted seconds of the stages, before a pilot changed any knob, and the plan's entries for the
-// knobs used.
+// Predicted seconds of the stages, before a pilot changed any knob.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
                    const MachineRates& machine, const bake::BakeExtras& extras,
-                   bake::BakeResult& result) {
+                   const bake::BakeResult& result) {
     const bake::EffectTable& effects = bake::all_effects();
-    const bake::CostRequest used{effects,       scene,          result.facts,          result.knobs,
-                                 machine.rates, result.threads, extras.receiver_errors};
-    bake::predict_costs(used, result.plan, result.volume_plan);
-    bake::predict_savings(used, result.plan);
     std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
     std::vector<bake::PlanEntry> others = result.volume_plan;
     bake::Knobs budget = wanted;
@@ -167,7 +162,7 @@ int run(const BakeCommand& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    auto imported = open_scene(options.scene, *knobs);
+    auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::fields);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -187,9 +182,6 @@ int run(const BakeCommand& options) {
         }
         files.push_back(std::move(*file));
     }
-    // Only the report has predictions; without a report the machine need not be measured.
-    const std::optional<MachineRates> machine =
-        options.report.empty() ? std::nullopt : std::optional(find_machine_rates());
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
@@ -219,9 +211,20 @@ int run(const BakeCommand& options) {
     }
     const std::uint64_t bytes = file.bytes_written();
     std::size_t next = 0;
-    if (machine) {
+    const MachineRates machine = find_machine_rates();
+    const bake::CostRequest request{bake::all_effects(),
+                                    imported->scene,
+                                    result->facts,
+                                    result->knobs,
+                                    machine.rates,
+                                    result->threads,
+                                    options.extras.receiver_errors};
+    const bake::CostPrediction used =
+        bake::predict_costs(request, result->plan, result->volume_plan);
+    if (!options.report.empty()) {
+        bake::predict_savings(request, result->plan);
         const Expectation expected =
-            expect(imported->scene, *knobs, *machine, options.extras, *result);
+            expect(imported->scene, *knobs, machine, options.extras, *result);
         if (auto status = files[next++].write(
                 make_report(imported->scene, *result, expected, warnings, bytes));
             !status) {
@@ -237,6 +240,7 @@ int run(const BakeCommand& options) {
     if (auto status = commit_all(files); !status) {
         return report_error(status.error());
     }
+    learn_machine_rates(machine.rates, used, result->stages);
     if (options.verbose) {
         print_stages(*result);
     }

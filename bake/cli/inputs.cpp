@@ -35,8 +35,9 @@ formats::Status fill_materials(const formats::MediaFile& media, formats::Importe
     return formats::ok_status();
 }
 
-formats::Status add_clouds(const formats::MediaFile& media, formats::ImportedScene& imported) {
-    const auto warnings = formats::load_clouds(media, imported.scene);
+formats::Status add_clouds(const formats::MediaFile& media, formats::CloudDetail detail,
+                           formats::ImportedScene& imported) {
+    const auto warnings = formats::load_clouds(media, imported.scene, detail);
     if (!warnings) {
         return warnings.error();
     }
@@ -45,7 +46,7 @@ formats::Status add_clouds(const formats::MediaFile& media, formats::ImportedSce
 }
 
 formats::Status add_media(const formats::MediaFile& media, double metres_per_unit,
-                          formats::ImportedScene& imported) {
+                          formats::CloudDetail detail, formats::ImportedScene& imported) {
     if (auto status = fill_materials(media, imported); !status) {
         return status;
     }
@@ -54,13 +55,14 @@ formats::Status add_media(const formats::MediaFile& media, double metres_per_uni
         return warnings.error();
     }
     join(*warnings, imported);
-    return add_clouds(media, imported);
+    return add_clouds(media, detail, imported);
 }
 
 // A volume alone, with what the media file says of it.
 formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& path,
                                                  double metres_per_unit,
-                                                 const std::filesystem::path& media) {
+                                                 const std::filesystem::path& media,
+                                                 formats::CloudDetail detail) {
     formats::MediaFile none;
     none.file = path.string();
     auto file = media.empty() ? std::move(none) : formats::read_media(media);
@@ -72,7 +74,7 @@ formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& pa
         if (auto status = fill_materials(*file, *imported); !status) {
             return std::move(status).error();
         }
-        if (auto status = add_clouds(*file, *imported); !status) {
+        if (auto status = add_clouds(*file, detail, *imported); !status) {
             return std::move(status).error();
         }
     }
@@ -81,7 +83,8 @@ formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& pa
 
 // The volumes and the cloud layer of a media file, without any surface.
 formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::path& path,
-                                                         double metres_per_unit) {
+                                                         double metres_per_unit,
+                                                         formats::CloudDetail detail) {
     const auto file = formats::read_media(path);
     if (!file) {
         return file.error();
@@ -93,7 +96,7 @@ formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::
     formats::ImportedScene imported;
     imported.scene.source = path.string();
     imported.scene.materials.resize(1);
-    if (auto status = add_media(*file, metres_per_unit, imported); !status) {
+    if (auto status = add_media(*file, metres_per_unit, detail, imported); !status) {
         return std::move(status).error();
     }
     return imported;
@@ -101,7 +104,8 @@ formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::
 
 formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& path,
                                                   const formats::ImportOptions& options,
-                                                  const std::filesystem::path& media) {
+                                                  const std::filesystem::path& media,
+                                                  formats::CloudDetail detail) {
     auto imported = formats::import_gltf(path, options);
     if (!imported) {
         return imported;
@@ -112,7 +116,7 @@ formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& p
         if (!own) {
             return own.error();
         }
-        if (auto status = add_media(*own, options.metres_per_unit, *imported); !status) {
+        if (auto status = add_media(*own, options.metres_per_unit, detail, *imported); !status) {
             return std::move(status).error();
         }
     }
@@ -121,7 +125,7 @@ formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& p
         if (!file) {
             return file.error();
         }
-        if (auto status = add_media(*file, options.metres_per_unit, *imported); !status) {
+        if (auto status = add_media(*file, options.metres_per_unit, detail, *imported); !status) {
             return std::move(status).error();
         }
     }
@@ -144,15 +148,16 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
 
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    const formats::ImportOptions& options,
-                                                   const std::filesystem::path& media) {
+                                                   const std::filesystem::path& media,
+                                                   formats::CloudDetail detail) {
     const std::filesystem::path ending = path.extension();
     if (ending == ".json" && !media.empty()) {
         return make_error(ErrorKind::usage, media.string(), "--media",
                           "the scene is a media file itself", "join both in one file");
     }
-    auto imported = ending == ".vdb"    ? open_vdb(path, options.metres_per_unit, media)
-                    : ending == ".json" ? open_media_scene(path, options.metres_per_unit)
-                                        : open_gltf(path, options, media);
+    auto imported = ending == ".vdb"    ? open_vdb(path, options.metres_per_unit, media, detail)
+                    : ending == ".json" ? open_media_scene(path, options.metres_per_unit, detail)
+                                        : open_gltf(path, options, media, detail);
     if (!imported) {
         return imported;
     }

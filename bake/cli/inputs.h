@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "formats/gltf/import_gltf.h"
+#include "formats/media/load_clouds.h"
 #include "formats/opal/environment.h"
 #include "formats/opal/file_bytes.h"
 #include "formats/opal/read_opal.h"
@@ -24,10 +25,11 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
 /// Reads a scene, fills its materials with the media of its extension OPALINE_media, then of a
 /// media file (none if the path is empty), loads their volumes and cloud layers, flattens
 /// sheets of a medium, and reports the warnings (messages.h). A `.vdb` file is a scene of one
-/// volume, and a media file (`.json`) one of its volumes and its cloud layer.
+/// volume, and a media file (`.json`) one of its volumes and its cloud layer. `detail`: of layers.
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    const formats::ImportOptions& options,
-                                                   const std::filesystem::path& media);
+                                                   const std::filesystem::path& media,
+                                                   formats::CloudDetail detail);
 
 /// A light as `--light` names it, turned by `--rotate-light` degrees about +Y.
 struct OpenedLight {

@@ -188,7 +188,8 @@ int run(const ReferenceOptions& options) {
     if (auto status = check_reference_paths(options, {}); !status) {
         return report_error(status.error());
     }
-    const auto imported = open_scene(options.scene, {options.metres_per_unit, {}}, options.media);
+    const auto imported = open_scene(options.scene, {options.metres_per_unit, {}}, options.media,
+                                     formats::CloudDetail::fields);
     if (!imported) {
         return report_error(imported.error());
     }

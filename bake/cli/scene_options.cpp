@@ -167,7 +167,8 @@ void add_error_option(CLI::App& command, SceneOptions& options) {
 }
 
 formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
-                                                   const bake::Knobs& knobs) {
+                                                   const bake::Knobs& knobs,
+                                                   formats::CloudDetail detail) {
     bake::Context context;
     context.threads = options.bake.threads;
     const unsigned threads = bake::thread_count(context);
@@ -181,7 +182,8 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     const auto check_size = [&](const formats::SceneCounts& counts) {
         return check(bake::count_memory(counts));
     };
-    auto imported = open_scene(options.scene, {options.metres_per_unit, check_size}, options.media);
+    auto imported =
+        open_scene(options.scene, {options.metres_per_unit, check_size}, options.media, detail);
     if (!imported) {
         return imported;
     }

@@ -5,6 +5,7 @@
 
 #include "bake/plan/bake_plan.h"
 #include "formats/gltf/import_gltf.h"
+#include "formats/media/load_clouds.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {
@@ -33,7 +34,8 @@ void add_error_option(CLI::App& command, SceneOptions& options);
 /// Opens the scene and its media (open_scene). What a bake with these knobs is predicted to need
 /// more memory for than there is, is refused before it is built. Errors: also resource.
 formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
-                                                   const bake::Knobs& knobs);
+                                                   const bake::Knobs& knobs,
+                                                   formats::CloudDetail detail);
 
 /// The options of the bake with the effects to simulate: none named for `auto`, nor for `all`,
 /// which forces every one. Errors: usage, for those that are unknown or that this version does not

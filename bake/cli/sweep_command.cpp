@@ -80,7 +80,7 @@ int run(const SweepCommand& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    const auto imported = open_scene(options.scene, *knobs);
+    const auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::fields);
     if (!imported) {
         return report_error(imported.error());
     }

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "bake/layers/calibrate_layers.h"
 #include "bake/layers/layer_knobs.h"
 
 namespace opaline::bake {
@@ -17,8 +16,7 @@ EffectDescriptor describe_cloud(Effect id) {
             .name = "cloud",
             .help = "light scattered by the droplets of cloud layers",
             .knobs = kCloudKnobs,
-            .concerns_layers = true,
-            .calibrate = calibrate_layers};
+            .concerns_layers = true};
 }
 
 EffectDescriptor describe_radiosity(Effect id) {

@@ -14,6 +14,8 @@
 #include "bake/emitters/media_patches.h"
 #include "bake/pipeline/lit_media.h"
 #include "bake/pipeline/shared_light.h"
+#include "bake/plan/walk_work.h"
+#include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 namespace {
@@ -177,7 +179,7 @@ void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
             bill.add(each, lamp);
         }
     };
-    const double ray = kIncoherent * request.rates.coherent_ray.at(request.facts.triangles);
+    const double ray = kIncoherent * kCoherentRay.at(request.facts.triangles);
     const double rays = request.knobs[kEmitterRays] * request.facts.receivers;
     const double particles = kFlights * request.knobs[kEmitterParticles] * ray;
     for_each("particles of emitters", {0, particles});
@@ -190,14 +192,14 @@ void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
     const std::size_t first_volume = list_lamps(request.scene).size();
     for (PlanEntry* lamp : lamps) {
         if (lamp->subject.index >= first_volume) {
-            bill.add({0, rays / 4 * glow_steps(request.scene) * request.rates.density_step}, lamp);
+            bill.add({0, rays / 4 * glow_steps(request.scene) * kDensityStep}, lamp);
         }
     }
     bill.add({0, rays * ray});  // to surfaces that reflect, for all
     bill.open("self-check of emitters");
     if (media) {
         bill.open("self-check of media lit by emitters");
-        bill.add({0, kLitMediaEvents * request.rates.body_event.at(request.facts.triangles)});
+        bill.add({0, kLitMediaEvents * kBodyEvent.at(request.facts.triangles)});
     }
     for (PlanEntry* lamp : lamps) {
         bill.add_bytes(6 * request.facts.receivers, lamp);

@@ -21,7 +21,7 @@ PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string
 
 // Walks of a volume that gather light of volumes: they fly as the others do, and look along their
 // flights for light: in half of the volume as a guess, three channels at twice the time of one.
-Work glow_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout) {
+Work glow_work(const VolumeWork& work, const VolumeLayout& layout) {
     constexpr double kShortWalk = 2, kGlowing = 0.5 * 2;
     if (!(work.nodes > 0) || layout.glow_walks == 0) {
         return {};
@@ -29,9 +29,8 @@ Work glow_work(const CostInput& input, const VolumeWork& work, const VolumeLayou
     const double flights =
         work.walks > 0 && work.flights > 0 ? work.flights / (work.nodes * work.walks) : kShortWalk;
     const double steps = work.depth_steps / (work.nodes * work.cells);
-    return {
-        0, work.nodes * layout.glow_walks * work.tracks *
-               (flights * input.rates.volume_flight + kGlowing * steps * input.rates.density_step)};
+    return {0, work.nodes * layout.glow_walks * work.tracks *
+                   (flights * kVolumeFlight + kGlowing * steps * kDensityStep)};
 }
 
 // Three halves a term, four bytes a voxel of the bricks that glow: half of them as a guess.
@@ -59,8 +58,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     if (volumes.empty()) {
         return;
     }
-    const CostInput input{request.rates, request.knobs, request.facts.triangles,
-                          request.facts.receivers};
+    const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
     const auto for_each = [&](std::string_view name, auto&& visit) {
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
             visit(volumes.works[i], payer_of(volume_plan, volumes.layouts[i].whole, name));
@@ -96,20 +94,20 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
                 work.nodes * work.bands * request.knobs[kVolumeCoefficients] * (check.probes + 1);
         }
         bill.open("self-check of volumes");
-        bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision +
-                         entries * request.rates.gather_entry});
+        bill.add(
+            {0, static_cast<double>(check.max_events) * kTracedCollision + entries * kGatherEntry});
     }
     if (count_glowing(volumes.layouts) > 0) {
         bill.open("light of volumes");
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
             PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].whole, "emitters");
-            bill.add(glow_work(input, volumes.works[i], volumes.layouts[i]), payer);
+            bill.add(glow_work(volumes.works[i], volumes.layouts[i]), payer);
             bill.add_bytes(glow_bytes(volumes.works[i], volumes.layouts[i]), payer);
         }
         bill.open("self-check of light of volumes");
         const VolumeCheckOptions check =
             volume_check_effort(volumes.works, volumes.layouts, request.knobs);
-        bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision});
+        bill.add({0, static_cast<double>(check.max_events) * kTracedCollision});
     }
     if (request.facts.receivers > 0) {
         bill.open("shadows of volumes");

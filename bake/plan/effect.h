@@ -23,8 +23,6 @@
 
 namespace opaline::bake {
 
-struct CalibrationBench;  // calibration/bench
-
 /// What an effect keeps between its functions: only the effect knows what it is.
 struct Prepared {
     virtual ~Prepared() = default;
@@ -186,10 +184,6 @@ struct EffectDescriptor {
     bool concerns_emitters = false;  ///< it is about light that the scene itself sends out
     /// Light of the reference that files with it hold, beside what all files are compared with.
     formats::TermSet held_light = formats::TermSet::none;
-
-    /// Measures the seconds of its units of work on one thread, of few or of many triangles
-    /// (`bench`). Null: other rooms measure them.
-    void (*calibrate)(const CalibrationBench& bench, Rates& rates) = nullptr;
 
     /// Memory: of the samples of one subject at most [bytes]; rows of a receiver of a medium.
     double (*sample_bytes)(const Knobs& knobs) = nullptr;

@@ -2,7 +2,6 @@
 
 #include <array>
 
-#include "bake/volumes/calibrate_volumes.h"
 #include "bake/volumes/volume_knobs.h"
 
 namespace opaline::bake {
@@ -19,8 +18,7 @@ EffectDescriptor describe_scattered_once(Effect id) {
             .name = "volume-single",
             .help = "light scattered once in smoke or clouds",
             .knobs = kKnobsOnce,
-            .concerns_volumes = true,
-            .calibrate = calibrate_volumes};
+            .concerns_volumes = true};
 }
 
 EffectDescriptor describe_scattered_often(Effect id) {

@@ -10,6 +10,10 @@
 
 namespace opaline::bake {
 
+/// Seconds of a step of an optical depth through one volume; of a walk's flight to a collision, and
+/// the direction after it; of a collision of the reference's paths, its light included.
+inline constexpr double kDensityStep = 8.9e-8, kVolumeFlight = 2.4e-7, kTracedCollision = 1.2e-6;
+
 /// What a bake of one volume does, in counts; expected values where chance has a part.
 struct VolumeWork {
     double voxels = 0;  ///< in bricks

@@ -7,9 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bake/calibration/rates_cache.h"
 #include "tests/cli/small_scene.h"
-#include "tests/support/rates.h"
 
 namespace opaline::tests {
 namespace {
@@ -183,8 +181,6 @@ double seconds_of(const Json& report, const std::string& name) {
 TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     SmallScene small;
     const TemporaryFolder cache;
-    ASSERT_TRUE(bake::write_rates(cache / "opaline/calibration.json", bake::this_machine(),
-                                  make_rates()));
     double seconds[2] = {};
     for (const int i : {0, 1}) {
         const std::string report = small.path("r" + std::to_string(i) + ".json");

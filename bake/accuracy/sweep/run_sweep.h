@@ -7,7 +7,7 @@
 
 #include "bake/accuracy/sweep/reference_ladder.h"
 #include "bake/accuracy/sweep/run_point.h"
-#include "bake/plan/rates.h"
+#include "bake/plan/stage_rates.h"
 
 namespace opaline::bake {
 
@@ -16,7 +16,7 @@ struct SweepOptions {
     double seconds = 300;       ///< the sweep starts no point that is predicted to end later
     double most_bytes = 4e9;    ///< nor one whose file is predicted to be larger
     std::size_t probes = 2000;  ///< receivers to compare at, at most
-    Rates rates;                ///< of this machine
+    StageRates rates;           ///< of this machine
     std::string light = "sky:3,35";  ///< of the pictures
 };
 

@@ -136,7 +136,7 @@ EffectDescriptor describe_direct(Effect id) {
                   .applies = [](const formats::Material& material,
                                 const RowLayout&) { return material.medium.has_value(); },
                   .run = study,
-                  .work = [](const SubjectCost& c) { return walk_work(c.input, c.medium()); }},
+                  .work = [](const SubjectCost& c) { return walk_work(c.medium()); }},
         .prepare = {.run = prepare},
         .gather = {.add = add,
                    .work =

@@ -9,7 +9,6 @@
 #include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
-#include "bake/effects/multiple/multiple_rates.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/effects/multiple/receiver_rows.h"
 #include "bake/effects/multiple/rule_layers.h"
@@ -289,7 +288,6 @@ EffectDescriptor describe_multiple(Effect id) {
                               return multiple_truth_work(cost, truth_points(effort));
                           }},
             .adds_other_light = true,
-            .calibrate = calibrate_multiple,
             .sample_bytes = sample_bytes,
             .add_at_entry = add_at_entry,
             .takes_even_media = takes_even_media,

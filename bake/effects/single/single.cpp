@@ -10,7 +10,6 @@
 #include "bake/effects/single/rules_single.h"
 #include "bake/effects/single/single_costs.h"
 #include "bake/effects/single/single_knobs.h"
-#include "bake/effects/single/single_rates.h"
 #include "bake/effects/single/single_stage.h"
 #include "bake/effects/single/true_single.h"
 #include "bake/plan/scattered_once.h"
@@ -214,7 +213,6 @@ EffectDescriptor describe_single(Effect id) {
                               return single_truth_work(cost,
                                                        truth_depths(cost.input.knobs, effort));
                           }},
-            .calibrate = calibrate_single,
             .typical_rows = typical_rows,
             .add_at_entry = add_at_entry,
             .warn_of_plan = warn_of_plan};

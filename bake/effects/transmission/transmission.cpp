@@ -123,7 +123,6 @@ EffectDescriptor describe_transmission(Effect id) {
                               return straight_truth_work(cost, 2.0 * truth_views(effort));
                           }},
             .held_light = formats::TermSet::unscattered,
-            .calibrate = calibrate_transmission,
             .make_look_through = make_look_through,
             .warn_of_model = warn_of_model};
 }
