@@ -10,7 +10,8 @@
 namespace opaline::bake {
 
 void learn_rates(std::span<const StageCost> predicted, const StageLog& ran, StageRates& rates) {
-    constexpr double kLeastSeconds = 5e-3, kMostFactor = 20, kLeastWeight = 1.0 / 8;
+    constexpr double kLeastSeconds = 5e-3, kFullSeconds = 0.1, kMostFactor = 20,
+                     kLeastWeight = 1.0 / 8;
     struct Sum {
         double work = 0, seconds = 0;
     };
@@ -32,7 +33,8 @@ void learn_rates(std::span<const StageCost> predicted, const StageLog& ran, Stag
         }
         StageRates::Learnt& learnt = rates.kinds[kind];
         ++learnt.bakes;
-        const double weight = std::max(1.0 / learnt.bakes, kLeastWeight);
+        const double weight =
+            std::max(1.0 / learnt.bakes, kLeastWeight) * std::min(1.0, sum.seconds / kFullSeconds);
         learnt.factor = std::pow(learnt.factor, 1 - weight) * std::pow(factor, weight);
     }
 }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace opaline::bake {
 namespace {
 
@@ -48,6 +50,13 @@ TEST(LearnRates, KindThatIsNotKnownTakesTheMachinesSpeed) {
     const StageCost stages[] = {predicted("a", "a", 1), predicted("b", "b", 1)};
     learn_rates(stages, {ran("a", 2), ran("b", 8)}, rates);
     EXPECT_NEAR(rates.factor("rows"), 4, 1e-12);
+}
+
+TEST(LearnRates, ShortStageTeachesLess) {
+    StageRates rates;
+    const StageCost stage = predicted("self-check", "self-check", 0.0025);
+    learn_rates({&stage, 1}, {ran("self-check", 0.025)}, rates);
+    EXPECT_NEAR(rates.factor("self-check"), std::pow(10, 0.25), 1e-9);
 }
 
 // Test lights are computed at the first bake and read at the next.
