@@ -133,8 +133,9 @@ Status make_picture(const ReferenceOptions& options, const bake::PathSpace& spac
         return camera.error();
     }
     if (options.paths.is_chosen()) {
-        return make_path_picture({options.output, options.exposure, options.samples, *camera},
-                                 space, options.paths, context);
+        return make_path_picture(
+            {options.output, options.exposure.value_or(0.0f), options.samples, *camera}, space,
+            options.paths, context);
     }
     const auto image = bake::estimate_image(space, *camera, wanted, context);
     if (!image) {
@@ -147,7 +148,8 @@ Status make_picture(const ReferenceOptions& options, const bake::PathSpace& spac
         return status;
     }
     const runtime::Picture picture{image->mean.width, image->mean.height, image->mean.pixel};
-    if (auto status = write_picture(options.output, picture, options.exposure); !status) {
+    if (auto status = write_picture(options.output, picture, options.exposure.value_or(0.0f));
+        !status) {
         return status;
     }
     print_summary(options, image->estimate);

@@ -143,7 +143,7 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options) {
          {"--size", "--azimuth", "--elevation", "--distance", "--target", "--up", "--fov"}) {
         options.picture_options.push_back(command.get_option(name));
     }
-    add_exposure_option(command, options.exposure);
+    add_exposure_option(command, options.exposure, "0");
     add_rotate_light_option(command, options.rotate_light);
     add_progress_option(command, options.progress);
 }

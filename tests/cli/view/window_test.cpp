@@ -226,7 +226,7 @@ TEST(View, FaultsOfAScriptNameItsLines) {
     const Outcome bad = run_opaline({"view", file, "--script", small.path("bad.txt")});
     EXPECT_EQ(bad.exit_code, 3);
     EXPECT_THAT(bad.err, HasSubstr("bad.txt: line 2: 'fly' is no command"));
-    EXPECT_THAT(bad.err, HasSubstr("bad.txt: line 3: expected exposure EV"));
+    EXPECT_THAT(bad.err, HasSubstr("bad.txt: line 3: expected exposure EV|auto"));
     const Outcome outcome =
         view_with(small, "wait-frames 2\nload none.opal\nscreenshot a.png\nquit\n", {file});
     if (outcome.exit_code == kNoDisplay) GTEST_SKIP() << "no Xvfb";
