@@ -175,6 +175,11 @@ int run(const BakeCommand& options) {
         return report_error(status.error());
     }
     const std::vector<OutputFile> outputs = name_outputs(options);
+    if (is_scene_ending(ending_of(options.output))) {
+        return report_error(formats::make_error(
+            formats::ErrorKind::usage, options.output, "--output",
+            "programs would take it for a scene by its ending", "end the name in .opal"));
+    }
     if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
         return report_error(status.error());
     }
@@ -194,7 +199,7 @@ int run(const BakeCommand& options) {
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
-    context.on_progress = make_progress_printer(options.progress);
+    context.on_progress = make_progress_printer(options.progress, "bake");
     auto result =
         bake::run_bake(bake::all_effects(), imported->scene, *knobs, context, options.extras);
     if (!result) {
@@ -237,11 +242,25 @@ int run(const BakeCommand& options) {
     if (auto status = commit_all(files); !status) {
         return report_error(status.error());
     }
+    if (context.on_progress) context.on_progress({"bake", 1, 1});
     if (options.verbose) {
         print_stages(*result);
     }
     print_summary(options, *result, bytes, warnings.size());
     return kExitSuccess;
+}
+
+// What a first bake needs, then the rest.
+void group_bake_options(CLI::App& command) {
+    group_options(command,
+                  {{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
+                   {"What is simulated",
+                    {"--effects", "--separate-terms", "--multiple-model", "--volume-method"}},
+                   {"Machine", {"--threads", "--memory-limit"}},
+                   {"What is reported",
+                    {"--report", "--depfile", "--progress", "--verbose", "--check-model",
+                     "--receiver-errors"}}},
+                  "Knobs, which --quality and --error set");
 }
 
 }  // namespace
@@ -258,7 +277,8 @@ void add_bake_command(CLI::App& app, Job& job) {
         "every bake, and more closely with this");
     command->add_option("-o,--output", options->output, "the .opal file to write")
         ->required()
-        ->check(file_name());
+        ->check(file_name())
+        ->option_text("OUT.opal REQUIRED");
     command->add_option("--report", options->report, "write a JSON report: plan, stages, error")
         ->check(file_name());
     command
@@ -273,6 +293,7 @@ void add_bake_command(CLI::App& app, Job& job) {
     command->add_flag("--verbose", options->verbose,
                       "also print what is simulated and why, and what each stage took");
     add_progress_option(*command, options->progress);
+    group_bake_options(*command);
     command->footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

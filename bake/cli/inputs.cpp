@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "bake/cli/messages.h"
+#include "bake/cli/outputs.h"
+#include "bake/cli/usage_errors.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/scene/flatten_slabs.h"
 #include "formats/media/apply_media.h"
@@ -136,6 +138,12 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
         return std::move(file).error();
     }
     auto loaded = formats::read_opal(file->bytes(), path.string(), checks);
+    if (!loaded && is_scene_ending(ending_of(path))) {
+        const std::string name = path.filename().string();
+        return make_error(
+            ErrorKind::bad_input, path.string(), "", "is a scene, not an .opal file",
+            "bake it first: opaline bake " + name + " -o " + path.stem().string() + ".opal");
+    }
     if (!loaded) {
         return std::move(loaded).error();
     }
@@ -145,7 +153,12 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    const formats::ImportOptions& options,
                                                    const std::filesystem::path& media) {
-    const std::filesystem::path ending = path.extension();
+    const std::string ending = ending_of(path);
+    if (ending == ".opal") {
+        return make_error(ErrorKind::bad_input, path.string(), "", "is baked already",
+                          "did you mean `opaline render " + path.filename().string() +
+                              "`? A bake reads a scene: .gltf, .glb, .vdb or .json");
+    }
     if (ending == ".json" && !media.empty()) {
         return make_error(ErrorKind::usage, media.string(), "--media",
                           "the scene is a media file itself", "join both in one file");
@@ -164,7 +177,26 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
     return imported;
 }
 
+formats::Status check_light(const std::string& spec) {
+    std::error_code ignored;
+    if (!bake::is_builtin(spec) && std::filesystem::exists(spec, ignored)) {
+        return formats::ok_status();
+    }
+    const auto made = bake::open_environment(spec);  // by its name, or an error
+    if (made) return formats::ok_status();
+    formats::Error error = made.error();
+    const std::string nearest = find_nearest(spec, {"white", "black", "studio"});
+    if (!nearest.empty() && nearest != spec) {
+        std::string& remedy = error.diagnostics.front().remedy;
+        remedy = "did you mean '" + nearest + "'? Else " + remedy;
+    }
+    return error;
+}
+
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees) {
+    if (auto status = check_light(spec); !status) {
+        return status.error();
+    }
     auto opened = bake::open_environment(spec);
     if (!opened) {
         return std::move(opened).error();
@@ -175,6 +207,10 @@ formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_d
     return OpenedLight{
         std::move(opened->environment),
         runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};
+}
+
+bool is_scene_ending(std::string_view ending) {
+    return ending == ".gltf" || ending == ".glb" || ending == ".vdb" || ending == ".json";
 }
 
 std::string light_help() {

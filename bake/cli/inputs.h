@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/gltf/import_gltf.h"
@@ -34,8 +35,15 @@ struct OpenedLight {
     formats::Environment environment;
     runtime::Rotation rotation;
 };
+/// Refuses a name that is neither a built-in nor a file, with the nearest one: before a large file
+/// is read. Errors: as open_light.
+formats::Status check_light(const std::string& spec);
 /// Reports warnings about repaired pixels.
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees);
+
+/// Whether a file with this ending, in lower case, is read as a scene: ".gltf", ".glb", ".vdb",
+/// ".json".
+bool is_scene_ending(std::string_view ending);
 
 /// Help text of `--light`.
 std::string light_help();

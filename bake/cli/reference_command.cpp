@@ -190,6 +190,9 @@ int run(const ReferenceOptions& options) {
     if (auto status = check_reference_paths(options, {}); !status) {
         return report_error(status.error());
     }
+    if (auto status = check_light(options.light); !status) {
+        return report_error(status.error());
+    }
     const auto imported = open_scene(options.scene, {options.metres_per_unit, {}}, options.media);
     if (!imported) {
         return report_error(imported.error());
@@ -237,13 +240,15 @@ int run(const ReferenceOptions& options) {
     bake::Context context;
     context.threads = options.threads;
     context.cancel = &interrupted;
-    context.on_progress = make_progress_printer(options.progress);
+    context.on_progress = make_progress_printer(options.progress, "reference");
     const bake::EstimateOptions wanted = estimate_options(options);
     const auto filtering = make_filtering(options, scene->surfaces, wanted.samples);
     const bake::PathSpace space{*scene, sampler, paths, filtering.get()};
     const Status status =
         (options.receivers > 0 ? make_table : make_picture)(options, space, wanted, context);
-    return status ? kExitSuccess : report_error(status.error());
+    if (!status) return report_error(status.error());
+    if (context.on_progress) context.on_progress({"reference", 1, 1});
+    return kExitSuccess;
 }
 
 }  // namespace

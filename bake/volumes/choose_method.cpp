@@ -87,7 +87,7 @@ void plan_methods(const formats::Scene& scene, const Knobs& knobs, std::span<Vol
                 char text[96];
                 std::snprintf(text, sizeof text,
                               "random walks: paths would take %.2g times the work", times);
-                why = text;
+                why = times > 1.05 ? text : "random walks, which take no more work than paths";
             } else {
                 why = "path integration if the bake measures at most " +
                       percent(method_budget(knobs)) + " of error, else random walks";

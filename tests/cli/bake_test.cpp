@@ -4,6 +4,7 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -183,8 +184,8 @@ double seconds_of(const Json& report, const std::string& name) {
 TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     SmallScene small;
     const TemporaryFolder cache;
-    ASSERT_TRUE(bake::write_rates(cache / "opaline/calibration.json", bake::this_machine(),
-                                  make_rates()));
+    ASSERT_TRUE(
+        bake::write_rates(cache / "opaline/calibration.json", bake::this_machine(), make_rates()));
     double seconds[2] = {};
     for (const int i : {0, 1}) {
         const std::string report = small.path("r" + std::to_string(i) + ".json");
@@ -248,15 +249,22 @@ TEST(Bake, ProgressIsJsonLinesOnRequestAndSilentOffATerminal) {
     ASSERT_EQ(json.exit_code, 0);
     std::istringstream lines(json.err);
     std::string line;
-    int steps = 0;
+    std::map<std::string, std::vector<std::string>> events;  // by stage
     while (std::getline(lines, line)) {
         if (line.empty() || line[0] != '{') continue;
         const Json step = Json::parse(line);
         EXPECT_LE(step.at("done").get<double>(), step.at("total").get<double>());
-        EXPECT_FALSE(step.at("stage").get<std::string>().empty());
-        ++steps;
+        EXPECT_GE(step.at("seconds").get<double>(), 0);
+        EXPECT_TRUE(step.at("eta_seconds").is_null() || step.at("eta_seconds").get<double>() >= 0);
+        events[step.at("stage")].push_back(step.at("event"));
     }
-    EXPECT_GT(steps, 0);
+    EXPECT_GT(events.size(), 1u);
+    EXPECT_EQ(events["bake"], (std::vector<std::string>{"begin", "end"}));
+    for (const auto& [stage, seen] : events) {
+        EXPECT_EQ(seen.front(), "begin") << stage;
+        EXPECT_EQ(seen.back(), "end") << stage;
+        EXPECT_LE(seen.size(), 22u) << stage;
+    }
     const Outcome silent = run_opaline({"bake", small.scene(), "-o", out});
     EXPECT_THAT(silent.err, StartsWith(out + ": 8 receivers, "));
     EXPECT_EQ(std::count(silent.err.begin(), silent.err.end(), '\n'), 1);
