@@ -179,6 +179,9 @@ int run(const ReferenceOptions& options) {
         return report_error(terms.error());
     }
     paths.terms = *terms;
+    if (auto status = check_light(options.light); !status) {
+        return report_error(status.error());
+    }
     const MonteCarloOption monte_carlo[] = {{"--receivers", options.receivers > 0},
                                             {"--seconds", options.seconds > 0},
                                             {"--max-depth", options.max_depth > 0},
@@ -188,9 +191,6 @@ int run(const ReferenceOptions& options) {
         return report_error(status.error());
     }
     if (auto status = check_reference_paths(options, {}); !status) {
-        return report_error(status.error());
-    }
-    if (auto status = check_light(options.light); !status) {
         return report_error(status.error());
     }
     const auto imported = open_scene(options.scene, {options.metres_per_unit, {}}, options.media);
