@@ -74,10 +74,12 @@ std::string ProgressLines::next(const bake::Progress& progress, double seconds_n
                                                   static_cast<double>(progress.total)
                                             : 1.0;
     const bool begins = !stage.is_open, ends = progress.done >= progress.total;
-    if (begins) stage = {seconds_now, 0, true};
+    if (begins && seconds_now < stage.next) return {};
+    if (begins) stage = {.begin = seconds_now, .is_open = true};
     if (!begins && !ends && share < stage.last_share + kStep) return {};
     stage.last_share = share;
     stage.is_open = !ends;
+    if (ends) stage.next = seconds_now + 1;
     const double seconds = seconds_now - stage.begin;
     Json line{{"stage", progress.stage}, {"event", ends ? "end" : begins ? "begin" : "step"},
               {"done", progress.done},   {"total", progress.total},

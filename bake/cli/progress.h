@@ -22,8 +22,9 @@ void add_progress_option(CLI::App& command, ProgressStyle& style);
 ///
 /// As JSON each line has `event`, `stage`, `done`, `total`, `seconds` since the stage began and
 /// `eta_seconds` until it ends, null where unknown. `event` is begin, step or end; a stage has one
-/// begin, one end where it comes to it, and a step for each twentieth at most. The command's own
-/// line comes first, with the stage `job`, and last, once `printer({job, 1, 1})` says so.
+/// begin, one end where it comes to it, and a step for each twentieth at most; what is gone through
+/// again within a second of its end has none. The command's own line comes first, with the stage
+/// `job`, and last, once `printer({job, 1, 1})` says so.
 std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle style,
                                                                  const std::string& job);
 
@@ -35,6 +36,7 @@ class ProgressLines {
   private:
     struct Stage {
         double begin = 0, last_share = 0;
+        double next = 0;  ///< a stage that is gone through again is silent until then
         bool is_open = false;
     };
     std::map<std::string, Stage, std::less<>> stages_;
