@@ -78,9 +78,8 @@ SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body
 
 double count_body_events(const formats::Medium& medium, const MaterialFacts& body) {
     const auto eta = static_cast<double>(medium.eta);
-    const double chord = std::abs(body.volume) > 0 && body.is_closed()
-                             ? 4 * std::abs(body.volume) / body.area
-                             : 2.0 / 3 * std::sqrt(body.area / std::numbers::pi);
+    const double chord = body.has_thickness() ? 4 * std::abs(body.volume) / body.area
+                                              : 2.0 / 3 * std::sqrt(body.area / std::numbers::pi);
     const double escape = std::max(1e-3, 1 - fresnel_moments(eta).external);
     double most = 0;
     for (const Band& band : bands_of(medium)) {
