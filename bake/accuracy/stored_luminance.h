@@ -30,7 +30,7 @@ Luminance relight_rows(const RowSource& source, std::span<const float> h,
                        std::span<const TestLight> lights);
 
 /// What the runtime shows at `point`, but for base colour and the exit's Ft: the mix of its
-/// vertices, each with its own h_k, for an eye far away along the point's normal. `layout`: of the
+/// vertices, each with its own h_k, for an eye far away along the point's view. `layout`: of the
 /// point's material.
 Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point,
                         const RowLayout& layout, std::span<const TestLight> lights);

@@ -20,14 +20,16 @@ struct RowLayout {
     std::uint32_t view_harmonics = 0;  ///< of these, filled by what `constant` says: 0, 4 or 9
     bool all_orders = false;           ///< `constant` holds light of all orders of scattering
     bool layered = false;              ///< light goes through other media inside its own
-    bool at_entry = false;             ///< light leaves the medium where it entered
-    bool separate = false;             ///< the row for all views stands apart from the harmonics
-    bool sheet = false;                ///< a row for each side that it may be seen from
-    bool grey = false;                 ///< the three bands coincide: one stands for them
-    bool coloured = false;             ///< light that arrives differs between the three bands
-    bool mirrors = false;              ///< its surface mirrors light: needs openness
-    bool filtered = false;             ///< its textures, where others see it: means over areas
-    formats::Rgb tint{1, 1, 1};        ///< times the base colour
+    /// No row holds what crosses the medium unscattered: it counts as bright as what scatters.
+    bool fills_crossed = false;
+    bool at_entry = false;       ///< light leaves the medium where it entered
+    bool separate = false;       ///< the row for all views is apart from the harmonics
+    bool sheet = false;          ///< a row for each side that it may be seen from
+    bool grey = false;           ///< the three bands coincide: one is stored
+    bool coloured = false;       ///< light that arrives differs between the three bands
+    bool mirrors = false;        ///< its surface mirrors light: needs openness
+    bool filtered = false;       ///< its textures, where others see it: means over areas
+    formats::Rgb tint{1, 1, 1};  ///< times the base colour
     /// Of the harmonics, those filled with light that nothing scatters: 0, 4 or 9.
     std::uint32_t straight_harmonics = 0;
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bake/effects/multiple/measure_models.h"
+#include "bake/effects/multiple/measure_views.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/plan/effect.h"
 
@@ -32,6 +33,7 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
 struct ModelChoice {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
     ModelErrors errors;
+    ViewErrors views;         ///< of walks, where the number of rows is ours to choose
     bool is_found = false;    ///< dipole_error comes from rays through the body (body_error)
     double dipole_error = 0;  ///< relative RMS, as a share of multiple scattering alone: estimated,
                               ///< found, or measured

@@ -15,9 +15,7 @@
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
-namespace {
 
-// White, and three suns that see each body from different sides.
 std::vector<TestLight> make_pilot_lights() {
     constexpr std::array<glm::vec3, 3> kSuns{
         {{0.36f, 0.48f, 0.8f}, {-0.8f, 0.6f, 0}, {0.48f, -0.36f, -0.8f}}};
@@ -36,6 +34,8 @@ std::vector<TestLight> make_pilot_lights() {
     }
     return lights;
 }
+
+namespace {
 
 // Sums over receivers and lights; a product of two independent estimates has no noise on average.
 struct Squares {

@@ -7,6 +7,9 @@
 
 namespace opaline::bake {
 
+/// White, and three suns that see each body from different sides: what is measured before a bake.
+std::vector<TestLight> make_pilot_lights();
+
 /// What the models err by in one body.
 struct ModelErrors {
     double dipole = 0, scaled = 0;  ///< relative RMS of multiple scattering

@@ -100,6 +100,10 @@ PreparedPtr study(const EffectInputs& inputs, std::uint64_t& rays) {
     studied->profile = make_medium_profile(even_medium(inputs.bake.scene, inputs.material),
                                            inputs.knobs.seed, inputs.context);
     studied->choice = choose_model(inputs, studied->profile, rays);
+    if (studied->choice.model == MultipleModel::walks && studied->choice.all_orders &&
+        measures_views(inputs.knobs)) {
+        studied->choice.views = measure_views(inputs, studied->profile, rays);
+    }
     return studied;
 }
 
@@ -127,6 +131,7 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        knobs[kEpsilon],
                                        std::max(1u, inputs.layout.view_harmonics),
                                        inputs.layout.all_orders || walks_alone,
+                                       inputs.layout.fills_crossed,
                                        inner_materials(inputs),
                                        inputs.layout.layered,
                                        inputs.light()},
@@ -204,6 +209,14 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
     return truth;
 }
 
+// Rows by view are asked for one view; else the mean over all is what the row holds.
+glm::vec3 seen_of(const EffectInputs& inputs, const TruthReceiver& receiver) {
+    if (receiver.seen != glm::vec3(0)) {
+        return receiver.seen;
+    }
+    return inputs.layout.view_harmonics > 0 ? receiver.inside.normal : glm::vec3(0);
+}
+
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& truth = static_cast<const Truth&>(prepared);
@@ -213,10 +226,11 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
         walked = walk_to_lights(
             truth.space,
             {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
-             truth.points, inputs.layout.view_harmonics > 0, &truth.other},
+             truth.points, seen_of(inputs, receiver), &truth.other},
             receiver.inside,
             {inputs.layout.all_orders ? 1u : 2u,
-             !inputs.layout.all_orders && model == MultipleModel::walks && truth.other},
+             !inputs.layout.all_orders && model == MultipleModel::walks && truth.other,
+             inputs.layout.fills_crossed},
             inputs.knobs.seed, receiver.key, rays);
     }
     if (model != MultipleModel::walks) {
@@ -257,6 +271,9 @@ void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>&
 void amend(const EffectInputs& inputs, PlanEntry& entry) {
     if (entry.name == "multiple.model") {
         describe_choice(static_cast<const Studied&>(*inputs.own.study).choice, entry);
+    }
+    if (entry.name == "multiple.view") {
+        amend_views(static_cast<const Studied&>(*inputs.own.study).choice.views, inputs, entry);
     }
 }
 

@@ -133,7 +133,8 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                  .bands = options.bands,
                  .seed = options.seed,
                  .orders = {options.all_orders ? 1u : 2u,
-                            !options.all_orders && !scales && options.light != nullptr}}};
+                            !options.all_orders && !scales && options.light != nullptr,
+                            options.fills_crossed}}};
     const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
     const std::size_t step = options.bands == 1 ? 1 : 4;
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));

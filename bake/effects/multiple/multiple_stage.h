@@ -48,6 +48,7 @@ struct MultipleOptions {
     /// 4 or 9: walks also say how the light changes with the view (SiteRows).
     std::uint32_t views = 1;
     bool all_orders = false;             ///< walks also count light that scatters once
+    bool fills_crossed = false;          ///< as WalkOrders says
     std::vector<std::uint32_t> inner{};  ///< materials of other media inside, for walks
     bool layered = false;               ///< and these matter: the dipole tells nothing of the light
     const OtherLight* light = nullptr;  ///< besides, or instead of, that of the environment

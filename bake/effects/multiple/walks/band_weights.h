@@ -28,6 +28,10 @@ class BandWeights {
     const std::array<float, 3>& value() const { return value_; }  ///< 0 in bands without light
     /// What is left of one walk: 1 at first, on average over all groups' walks.
     double left() const;
+    /// The same of one band.
+    double left(std::size_t band) const {
+        return static_cast<double>(all_walks_) * static_cast<double>(value_[band]);
+    }
 
     /// The walk goes on in another of the space's media. It starts in the first.
     void enter(std::uint8_t medium);

@@ -26,8 +26,11 @@ using FirstFlight = std::vector<FlightNode>;
 
 /// First flights of walks from a receiver, as follow_walk draws them in the space's first medium,
 /// with their reflections inside. Where a mesh has a hole a flight goes on to the space's box; the
-/// other flights make up for what is left of it there.
-FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views,
-                               const BodyPoint& point);
+/// other flights make up for what is left of it there. What leaves the body unscattered at once,
+/// through a triangle of the point's own vertex, counts as bright as the rest of its view, as
+/// `transmission` leaves it out; `fills_crossed`: so does all that leaves unscattered. What meets
+/// another material does not.
+FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views, const BodyPoint& point,
+                               bool fills_crossed = false);
 
 }  // namespace opaline::bake

@@ -66,10 +66,19 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
     for (std::size_t g = 0; g < space.bands.size(); ++g) {
         group.walks[g] = static_cast<float>(share_of(space.bands[g], is_grey) / shares);
     }
-    const WalkStart start{point.inner, point.normal, point.normal,
-                          std::max(1, count_shells(space, point.inner, -point.normal)),
-                          light.along_normal};
+    WalkStart start{point.inner, point.normal, point.normal,
+                    std::max(1, count_shells(space, point.inner, -point.normal)), light.seen};
+    start.vertex = point.position;
     std::vector<WalkExit> exits;
+    std::array<double, 3> seen_bands{};
+    for (const WalkBands& bands : space.bands) {
+        for (std::size_t b = 0; b < 3; ++b) {
+            seen_bands[b] += bands.member[b] ? (is_grey ? 1 : kLuminance[b]) / shares : 0;
+        }
+    }
+    const auto correction = [&](const WalkCounts& counts) {
+        return counts.correction() * counts.crossed_correction(seen_bands);
+    };
     Luminance irradiance(lights), diffuse(lights);
     std::uint32_t walk = 0;
     for (Luminance* estimate : {&estimates.first, &estimates.second}) {
@@ -120,7 +129,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
             }
         }
         for (double& value : *estimate) {
-            value *= counts.correction();
+            value *= correction(counts);
         }
         traced += counts.rays;
     }

@@ -26,8 +26,8 @@ float transmittance(float cosine, float eta) {
 // Into the half space below both normals. Refracted by the smooth one; where that leads above the
 // facet, by the facet's.
 glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRandom& random) {
-    if (start.is_along_normal) {
-        return -start.normal;
+    if (start.seen != glm::vec3(0)) {
+        return -start.seen;
     }
     float cosine = 1, azimuth = 0;
     constexpr int kMostTries = 1000;  // one in a hundred is accepted at the most extreme index
@@ -69,6 +69,7 @@ class Walk {
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
         position_ = start_ = start.position;
+        vertex_ = start.vertex;
         free_.set(position_, 0, start.depth);
         if (start.arrival != glm::vec3(0)) {
             direction_ = start.arrival;
@@ -309,6 +310,12 @@ class Walk {
             leave(hit, normal, cosine, passed);
             exits_.back().is_once = !counts;
         }
+        if (scatterings_ == 0 &&
+            (orders_.fills_crossed || (!is_reflected_ && is_around_vertex(space_, hit, vertex_)))) {
+            for (std::size_t b = 0; b < 3; ++b) {
+                counts_.crossed[b] += static_cast<double>(passed) * weight_.left(b);
+            }
+        }
         is_reflected_ = true;
         position_ = hit.position - 2 * hit.error * hit.flat;
         direction_ = glm::normalize(direction_ - 2 * glm::dot(direction_, normal) * normal);
@@ -344,7 +351,7 @@ class Walk {
     std::vector<WalkExit>& exits_;
     WalkCounts& counts_;
 
-    glm::vec3 start_{0}, position_{0}, direction_{0};
+    glm::vec3 start_{0}, vertex_{0}, position_{0}, direction_{0};
     float length_ = 0;     // of the walk so far
     float clearance_ = 0;  // where it may jump [m]
     FreeBall free_;
@@ -365,6 +372,9 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     endless += other.endless;
     buried += other.buried;
     unfinished += other.unfinished;
+    for (std::size_t b = 0; b < 3; ++b) {
+        crossed[b] += other.crossed[b];
+    }
     return *this;
 }
 

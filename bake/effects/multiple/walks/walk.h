@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "bake/base/rng.h"
@@ -63,15 +64,17 @@ class WalkRandom {
 
 /// A point just inside a body from which walks start, and the surface through which they are seen.
 struct WalkStart {
-    glm::vec3 position{0};         ///< [m], inside
-    glm::vec3 normal{0};           ///< unit, outward, of the smooth surface: it refracts
-    glm::vec3 flat{0};             ///< unit, outward, of the facet: walks start below it
-    int shells = 1;                ///< of the medium, around the point
-    bool is_along_normal = false;  ///< seen along the normal, instead of from everywhere
+    glm::vec3 position{0};  ///< [m], inside
+    glm::vec3 normal{0};    ///< unit, outward, of the smooth surface: it refracts
+    glm::vec3 flat{0};      ///< unit, outward, of the facet: walks start below it
+    int shells = 1;         ///< of the medium, around the point
+    glm::vec3 seen{0};      ///< unit, inside, toward the eye that sees it; 0: seen from everywhere
     /// Of walks that begin with a scattering at `position`: the way that they came, away from the
     /// eye. 0 of those that begin at the surface.
     glm::vec3 arrival{0};
     float depth = 0;  ///< [m] of `position` below the surface that the site lies on
+    /// [m], at which the walk is seen, where that is a vertex.
+    glm::vec3 vertex{std::numeric_limits<float>::quiet_NaN()};
 };
 
 /// Light that a walk finds: what arrives at `position` from outside along `direction` is seen at
@@ -103,12 +106,24 @@ struct WalkCounts {
     std::uint64_t buried =
         0;                  ///< given up where more media lie in each other than MediumStack holds
     double unfinished = 0;  ///< weight that lost, endless and buried walks still had, in walks
+    /// Weight that left through the boundary unscattered and counts as bright as the rest, band by
+    /// band, in walks: at once, through a triangle of WalkStart::vertex, or as WalkOrders says.
+    std::array<double, 3> crossed{};
 
     /// The factor by which the walks that ended stand for those that did not (README.md, "The
     /// estimator").
     double correction() const {
         const auto all = static_cast<double>(walks);
         return unfinished < 0.5 * all ? all / (all - unfinished) : 1;
+    }
+    /// The factor by which walks that scatter stand for those `crossed`, of bands that count by
+    /// `shares` of sum 1.
+    double crossed_correction(const std::array<double, 3>& shares) const {
+        double left = static_cast<double>(walks);
+        for (std::size_t b = 0; b < 3; ++b) {
+            left -= shares[b] * crossed[b];
+        }
+        return left > 0 ? static_cast<double>(walks) / left : 1;
     }
 
     WalkCounts& operator+=(const WalkCounts& other);
@@ -122,6 +137,8 @@ struct WalkOrders {
     std::uint32_t least = 2;
     /// Light scattered once alone counts for diffuse light as well: its exits are marked.
     bool marks_once = false;
+    /// Light that leaves the body unscattered counts as bright as the rest: nothing else holds it.
+    bool fills_crossed = false;
 };
 
 /// Follows one walk backwards from the eye (README.md, "The estimator"). The start's direction is

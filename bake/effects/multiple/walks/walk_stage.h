@@ -47,6 +47,7 @@ struct WalkStage {
     SiteField field, view_field;     ///< the latter of rows by view: they vary less and are noisier
     InnerField inner;                ///< instead of both, where sites are inside
     std::optional<WalkSpace> space;  ///< of the inner field
+    bool fills_crossed = false;      ///< of its flights, as of WalkOrders
     SiteRows rows;
     ViewFit view_fit;  ///< of the boundary
     WalkCounts counts;
