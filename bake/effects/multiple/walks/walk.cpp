@@ -140,6 +140,9 @@ class Walk {
         position_ += jump.way / sigma_t;
         direction_ = jump.direction;
         length_ += jump.length / sigma_t;
+        if (scatterings_ == 0 && jump.scatterings > 0) {
+            add_left(1, counts_.scattered);
+        }
         scatterings_ += static_cast<std::uint32_t>(jump.scatterings);
         return weight_.cross_ball(jump.length / sigma_t, jump.scatterings) && survives();
     }
@@ -147,6 +150,19 @@ class Walk {
     float flight_length() {
         const float depth = -std::log(1 - random_.next());
         return weight_.sigma_t() > 0 ? depth / weight_.sigma_t() : kForever;
+    }
+
+    void count_scattering() {
+        if (scatterings_++ == 0) {
+            add_left(1, counts_.scattered);
+        }
+    }
+
+    // The weight in walks times `share`.
+    void add_left(float share, std::array<double, 3>& sum) const {
+        for (std::size_t b = 0; b < 3; ++b) {
+            sum[b] += static_cast<double>(share) * weight_.left(b);
+        }
     }
 
     bool give_up(std::uint64_t& count) {
@@ -203,7 +219,7 @@ class Walk {
         if (const auto& field = medium().field) {
             return collide_in(*field);
         }
-        ++scatterings_;
+        count_scattering();
         turn();
         return weight_.absorb() && survives();
     }
@@ -215,7 +231,7 @@ class Walk {
         if (field.has_density() && !(random_.next() < field.density(position_))) {
             return true;
         }
-        ++scatterings_;
+        count_scattering();
         turn();
         const glm::vec3 albedo = field.albedo(position_);
         return weight_.absorb({albedo.x, albedo.y, albedo.z}) && survives();
@@ -312,9 +328,7 @@ class Walk {
         }
         if (scatterings_ == 0 &&
             (orders_.fills_crossed || (!is_reflected_ && is_around_vertex(space_, hit, vertex_)))) {
-            for (std::size_t b = 0; b < 3; ++b) {
-                counts_.crossed[b] += static_cast<double>(passed) * weight_.left(b);
-            }
+            add_left(passed, counts_.crossed);
         }
         is_reflected_ = true;
         position_ = hit.position - 2 * hit.error * hit.flat;
@@ -373,6 +387,7 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     buried += other.buried;
     unfinished += other.unfinished;
     for (std::size_t b = 0; b < 3; ++b) {
+        scattered[b] += other.scattered[b];
         crossed[b] += other.crossed[b];
     }
     return *this;

@@ -106,9 +106,10 @@ struct WalkCounts {
     std::uint64_t buried =
         0;                  ///< given up where more media lie in each other than MediumStack holds
     double unfinished = 0;  ///< weight that lost, endless and buried walks still had, in walks
-    /// Weight that left through the boundary unscattered and counts as bright as the rest, band by
-    /// band, in walks: at once, through a triangle of WalkStart::vertex, or as WalkOrders says.
-    std::array<double, 3> crossed{};
+    /// Weight, band by band, in walks: that scattered at all; and that left through the boundary
+    /// before and counts as bright as the rest: at once, through a triangle of WalkStart::vertex,
+    /// or as WalkOrders says.
+    std::array<double, 3> scattered{}, crossed{};
 
     /// The factor by which the walks that ended stand for those that did not (README.md, "The
     /// estimator").
@@ -117,13 +118,15 @@ struct WalkCounts {
         return unfinished < 0.5 * all ? all / (all - unfinished) : 1;
     }
     /// The factor by which walks that scatter stand for those `crossed`, of bands that count by
-    /// `shares` of sum 1.
+    /// `shares`. A quotient, as nearly all may cross: what scatters is known far better than 1 less
+    /// what does not.
     double crossed_correction(const std::array<double, 3>& shares) const {
-        double left = static_cast<double>(walks);
+        double own = 0, other = 0;
         for (std::size_t b = 0; b < 3; ++b) {
-            left -= shares[b] * crossed[b];
+            own += shares[b] * scattered[b];
+            other += shares[b] * crossed[b];
         }
-        return left > 0 ? static_cast<double>(walks) / left : 1;
+        return own > 0 ? (own + other) / own : 1;
     }
 
     WalkCounts& operator+=(const WalkCounts& other);
