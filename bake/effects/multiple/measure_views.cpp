@@ -1,7 +1,6 @@
 #include "bake/effects/multiple/measure_views.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -11,7 +10,6 @@
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/effects/multiple/walks/view_set.h"
-#include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
 namespace {
@@ -19,56 +17,25 @@ namespace {
 // Sums over receivers, views and lights; a product of two independent estimates has no noise on
 // average.
 struct ViewSquares {
-    double one = 0, four = 0, truth = 0;
+    double one = 0, truth = 0;
 };
 
-// Of light seen along each view of a set with four rows: what these rows show along view `u`, as
-// weights of the views.
-std::vector<double> shown_by_four(const ViewSet& set, const ViewMatrix& matrix, std::size_t u) {
-    const glm::vec3 seen = -set.into[u];
-    std::array<float, 1 + kAllDegrees> harmonic{};
-    formats::eval_spherical_harmonics({seen.x, seen.y, seen.z}, harmonic);
-    std::array<double, kFirstDegree> function{};
-    for (std::size_t k = 0; k < harmonic.size(); ++k) {
-        for (std::size_t r = 0; r < function.size(); ++r) {
-            function[r] += static_cast<double>(matrix[k][r]) * static_cast<double>(harmonic[k]);
-        }
-    }
-    std::vector<double> weight;
-    for (const auto& share : set.share) {
-        double sum = static_cast<double>(share[0]);
-        for (std::size_t r = 0; r < function.size(); ++r) {
-            sum += function[r] * static_cast<double>(share[r + 1]);
-        }
-        weight.push_back(sum);
-    }
-    return weight;
-}
-
 // `seen`: of each view.
-ViewSquares compare_views(const ViewSet& set, const ViewMatrix& matrix,
-                          const std::vector<TwoEstimates>& seen) {
+ViewSquares compare_views(const ViewSet& set, const std::vector<TwoEstimates>& seen) {
     constexpr double kNormal = 0.25;  // weight of the last view, the normal
-    std::vector<double> one;
-    for (const auto& share : set.share) {
-        one.push_back(static_cast<double>(share[0]));
-    }
     ViewSquares squares;
     for (std::size_t u = 0; u < seen.size(); ++u) {
-        const double weight = u + 1 == seen.size() ? kNormal : (1 - kNormal) * one[u];
-        const std::vector<double> four = shown_by_four(set, matrix, u);
+        const double weight =
+            u + 1 == seen.size() ? kNormal : (1 - kNormal) * static_cast<double>(set.share[u][0]);
         for (std::size_t l = 0; l < seen[u].first.size(); ++l) {
-            const auto left = [&](const std::vector<double>& shown, Luminance TwoEstimates::*by) {
+            const auto left = [&](Luminance TwoEstimates::*by) {
                 double sum = -(seen[u].*by)[l];
                 for (std::size_t v = 0; v < seen.size(); ++v) {
-                    sum += shown[v] * (seen[v].*by)[l];
+                    sum += static_cast<double>(set.share[v][0]) * (seen[v].*by)[l];
                 }
                 return sum;
             };
-            squares.one +=
-                weight * left(one, &TwoEstimates::first) * left(one, &TwoEstimates::second);
-            squares.four +=
-                weight * left(four, &TwoEstimates::first) * left(four, &TwoEstimates::second);
+            squares.one += weight * left(&TwoEstimates::first) * left(&TwoEstimates::second);
             squares.truth += weight * seen[u].first[l] * seen[u].second[l];
         }
     }
@@ -80,7 +47,7 @@ ViewSquares compare_views(const ViewSet& set, const ViewMatrix& matrix,
 ViewErrors measure_views(const EffectInputs& inputs, const MediumProfile& profile,
                          std::uint64_t& traced) {
     constexpr std::size_t kReceivers = 16;
-    constexpr std::uint32_t kFromEach = 8, kRaysPerSun = 1;
+    constexpr std::uint32_t kFromEach = 32, kRaysPerSun = 1;
     const std::vector<BodyPoint> points = draw_body_points(inputs, kReceivers);
     const std::vector<TestLight> lights = make_pilot_lights();
     const SunRays suns = make_sun_rays(lights, kRaysPerSun);
@@ -111,12 +78,11 @@ ViewErrors measure_views(const EffectInputs& inputs, const MediumProfile& profil
                                               {1, false, inputs.layout.fills_crossed},
                                               inputs.knobs.seed, key, part.rays));
             }
-            part.squares = compare_views(set, to_harmonics(fit, point.normal), seen);
+            part.squares = compare_views(set, seen);
             return part;
         },
         [&](Range, Part&& part) {
             sum.one += part.squares.one;
-            sum.four += part.squares.four;
             sum.truth += part.squares.truth;
             traced += part.rays;
         });
@@ -128,7 +94,7 @@ ViewErrors measure_views(const EffectInputs& inputs, const MediumProfile& profil
         const double error = std::sqrt(std::max(0.0, squares / sum.truth));
         return error > kNoise ? error : 0;
     };
-    return {above_noise(sum.one), above_noise(sum.four), static_cast<std::uint32_t>(points.size())};
+    return {above_noise(sum.one), static_cast<std::uint32_t>(points.size())};
 }
 
 }  // namespace opaline::bake

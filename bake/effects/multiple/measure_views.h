@@ -7,10 +7,10 @@
 
 namespace opaline::bake {
 
-/// What rows for all views leave of light of all orders: relative RMS over vertices, views and
+/// What one row for all views leaves of light of all orders: relative RMS over vertices, views and
 /// lights.
 struct ViewErrors {
-    double one = 0, four = 0;     ///< of so many rows
+    double one = 0;
     std::uint32_t receivers = 0;  ///< 0: nothing was measured
 };
 

@@ -218,8 +218,8 @@ void amend_views(const ViewErrors& measured, const EffectInputs& inputs, PlanEnt
     const bool is_known = body.has_thickness();
     const double one =
         std::max(measured.one, is_known ? one_view_error(inputs.medium(), body) : 0.0);
-    const double four =
-        std::max(measured.four, is_known ? four_views_error(inputs.medium(), body) : 0.0);
+    // What four leave is too small a difference to be measured so.
+    const double four = is_known ? four_views_error(inputs.medium(), body) : 0;
     const std::uint32_t rows = rows_for(four, inputs.knobs);
     if (one > allowed_view_error(inputs.knobs) || rows == 9) {
         take_views(one, four, rows, entry);
