@@ -1,4 +1,4 @@
-#include "bake/path_differentials/camera_start.h"
+#include "tests/bake/path_differentials/camera_start.h"
 
 #include "bake/path_differentials/disk_map.h"
 

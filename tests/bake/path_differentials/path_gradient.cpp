@@ -1,4 +1,4 @@
-#include "bake/path_differentials/path_gradient.h"
+#include "tests/bake/path_differentials/path_gradient.h"
 
 namespace opaline::bake {
 namespace {
@@ -38,13 +38,6 @@ double dln_microfacet(const glm::dvec3& N, const glm::dvec3& dN, const Direction
     const SmithLambda in = smith_lambda(c_i, dc_i, alpha), out = smith_lambda(c_o, dc_o, alpha);
     return dln_normal_density(N, dN, pair, alpha) -
            (in.change + out.change) / (1 + in.value + out.value) - dc_i / c_i - dc_o / c_o;
-}
-
-double dln_visible_reflection(const glm::dvec3& N, const glm::dvec3& dN, const DirectionPair& pair,
-                              double alpha) {
-    const double c_i = glm::dot(N, pair.in), dc_i = cosine_change(N, dN, pair.in, pair.din);
-    const SmithLambda in = smith_lambda(c_i, dc_i, alpha);
-    return dln_normal_density(N, dN, pair, alpha) - in.change / (1 + in.value) - dc_i / c_i;
 }
 
 }  // namespace opaline::bake

@@ -5,13 +5,8 @@
 
 namespace opaline::bake {
 
-/// Relative derivatives d ln of the factors of a path's contribution, for one column.
-
-/// Which contribution a path's gradient is of.
-enum class GradientForm {
-    contribution,  ///< F: factors that importance sampling follows count as well
-    weight         ///< F / p: they cancel
-};
+/// Relative derivatives d ln of the factors of a path's contribution, for one column, as the value
+/// table has them.
 
 /// Of N.D, which is clamped to `kLeastCosine` where it divides.
 inline constexpr double kLeastCosine = 1e-4;
@@ -44,25 +39,10 @@ struct DirectionPair {
 double dln_microfacet(const glm::dvec3& N, const glm::dvec3& dN, const DirectionPair& pair,
                       double alpha);
 
-/// Of the density of the reflection about a visible normal: D(h) G1(in) / (4 cos_i).
-double dln_visible_reflection(const glm::dvec3& N, const glm::dvec3& dN, const DirectionPair& pair,
-                              double alpha);
-
 /// Two vertices at distance r, and the relative changes of what lies between them.
 /// cos cos' / r^2: the sum of both cosines' and -2 dr / r.
 inline double dln_geometry(double dln_cosine_near, double dln_cosine_far, double r, double dr) {
     return dln_cosine_near + dln_cosine_far - 2 * dr / r;
-}
-
-/// Of e^(-sigma t): -sigma dt, sigma constant.
-inline double dln_transmittance(double sigma, double dt) {
-    return -sigma * dt;
-}
-
-/// Of a texture's value: grad(value).d(uv) / value; 0 where the value is 0. At the level that the
-/// footprint reads.
-inline double dln_texture(double value, const glm::dvec2& gradient, const glm::dvec2& duv) {
-    return value != 0 ? glm::dot(gradient, duv) / value : 0;
 }
 
 }  // namespace opaline::bake
