@@ -21,7 +21,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kGreyEntry = 0.8;  // what one band costs of what three do; measured
+constexpr double kGreyEntry = 0.8;  // cost of one band over that of three; measured
 
 double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
@@ -163,8 +163,8 @@ double sample_bytes(const Knobs& knobs) {
     constexpr double kTree = 2;              // nodes hold as much as the samples
     constexpr double kMoments = 0.75;        // of a sample's entries
     constexpr double kSiteEntry = 16;        // of a site's row: index and three values
-    const auto model = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
-    const bool may_walk = model == MultipleModel::automatic || model == MultipleModel::walks;
+    const bool may_walk =
+        static_cast<MultipleModel>(whole(knobs, kMultipleModel)) != MultipleModel::dipole;
     const double walked = may_walk ? kMoments * knobs[kSamples] * kept_by_samples(knobs) * kEntry +
                                          knobs[kSites] * kept_by_samples(knobs) * kSiteEntry
                                    : 0;
