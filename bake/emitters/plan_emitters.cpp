@@ -9,6 +9,7 @@
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/largest_light.h"
 #include "bake/volumes/plan_volumes.h"
+#include "bake/volumes/volume_effects.h"
 
 namespace opaline::bake {
 namespace {
@@ -28,7 +29,7 @@ double distance_of(const GapBox& a, const GapBox& b) {
     return glm::length(glm::max(glm::dvec3(0), glm::max(a.low - b.high, b.low - a.high)));
 }
 
-// No surface sends out more of what arrives; 1 where metals, sheets or media have a say.
+// Upper bound on the share of light that a surface sends on; 1 with metals, sheets or media.
 double largest_albedo(const formats::Scene& scene) {
     float most = 0;
     for (const formats::Primitive& primitive : scene.primitives) {
@@ -71,7 +72,7 @@ double bound_on_surfaces(const formats::Scene& scene, const formats::Volume& vol
 PlanEntry decide_volume(const formats::Scene& scene, const formats::Volume& volume,
                         bool has_surfaces, const Knobs& knobs) {
     PlanEntry entry;
-    entry.name = "emitters";
+    entry.name = kEmitters;
     entry.has_bands = true;
     entry.bound = has_surfaces ? bound_on_surfaces(scene, volume) : 0;
     const double least =
@@ -95,7 +96,7 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
     std::vector<Lamp> lamps = list_lamps(scene);
     for (const Lamp& lamp : lamps) {
         PlanEntry entry;
-        entry.name = "emitters";
+        entry.name = kEmitters;
         entry.subject = {Subject::Kind::emitter, number++, "emitter '" + lamp.name + "'"};
         entry.has_bands = true;
         entry.bound = has_surfaces ? std::numeric_limits<double>::quiet_NaN() : 0;

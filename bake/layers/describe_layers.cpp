@@ -4,6 +4,7 @@
 
 #include "bake/layers/calibrate_layers.h"
 #include "bake/layers/layer_knobs.h"
+#include "bake/layers/plan_layers.h"
 
 namespace opaline::bake {
 namespace {
@@ -14,7 +15,7 @@ constexpr std::array<const KnobSpec*, 2> kCloudKnobs{&kCloudStep, &kCloudNodes};
 
 EffectDescriptor describe_cloud(Effect id) {
     return {.id = id,
-            .name = "cloud",
+            .name = kCloud,
             .help = "light scattered by the droplets of cloud layers",
             .knobs = kCloudKnobs,
             .concerns_layers = true,
@@ -23,7 +24,7 @@ EffectDescriptor describe_cloud(Effect id) {
 
 EffectDescriptor describe_radiosity(Effect id) {
     return {.id = id,
-            .name = "radiosity",
+            .name = kRadiosity,
             .help = "light between cloud layers and the ground",
             .concerns_layers = true};
 }

@@ -5,6 +5,7 @@
 
 #include "bake/layers/layer_error.h"
 #include "bake/layers/layer_work.h"
+#include "bake/layers/plan_layers.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,8 +24,8 @@ void bill_layers(const CostRequest& request, std::span<PlanEntry> plan, Bill& bi
     const CostInput input{request.rates, request.knobs, request.facts.triangles,
                           request.facts.receivers};
     for (std::uint32_t i = 0; i < request.scene.layers.size(); ++i) {
-        PlanEntry* const cloud = find_layer_entry(plan, i, "cloud");
-        PlanEntry* const often = find_layer_entry(plan, i, "cloud.multiple");
+        PlanEntry* const cloud = find_layer_entry(plan, i, kCloud);
+        PlanEntry* const often = find_layer_entry(plan, i, kCloudOften);
         if (cloud != nullptr && !cloud->on) {
             continue;
         }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/pipeline/volume_stages.h"
+#include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_parts.h"
 
@@ -19,8 +20,8 @@ PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string
     return found == plan.end() ? nullptr : &*found;
 }
 
-// Walks of a volume that gather light of volumes: they fly as the others do, and look along their
-// flights for light: in half of the volume as a guess, three channels at twice the time of one.
+// Walks of a volume that gather light of volumes: they fly as the others do, and sum emission along
+// their flights: through half of the volume as a guess, three channels at twice the time of one.
 Work glow_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout) {
     constexpr double kShortWalk = 2, kGlowing = 0.5 * 2;
     if (!(work.nodes > 0) || layout.glow_walks == 0) {
@@ -67,7 +68,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         }
     };
     bill.open("light in volumes");
-    for_each("volume-single", [&](const VolumeWork& work, PlanEntry* payer) {
+    for_each(kOnceInVolumes, [&](const VolumeWork& work, PlanEntry* payer) {
         bill.add(attenuation_work(input, work), payer);
         bill.add_bytes(volume_density_bytes(work));
         bill.add_bytes(attenuated_row_bytes(work, request.knobs), payer);
@@ -76,14 +77,14 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         bill.open("surfaces that volumes see");
         const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
         bill.add(seen_surfaces_work(input, volumes.works, request.facts.receivers, row_count),
-                 payer_of(volume_plan, first->whole, "surface-volume"));
+                 payer_of(volume_plan, first->whole, kSurfacesToVolumes));
     }
     bill.open(scattering_stage(volumes.layouts));
     for (std::size_t i = 0; i < volumes.works.size(); ++i) {
         // Walks and rows that light of the sky does not need are those of surfaces.
         const VolumeLayout& layout = volumes.layouts[i];
         PlanEntry* const payer = payer_of(volume_plan, layout.whole,
-                                          layout.sees_sky ? "volume-multiple" : "surface-volume");
+                                          layout.sees_sky ? kOftenInVolumes : kSurfacesToVolumes);
         bill.add(scattering_work(input, volumes.works[i]), payer);
         bill.add_bytes(scattered_row_bytes(volumes.works[i], request.knobs), payer);
     }
@@ -102,7 +103,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     if (count_glowing(volumes.layouts) > 0) {
         bill.open("light of volumes");
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].whole, "emitters");
+            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].whole, kEmitters);
             bill.add(glow_work(input, volumes.works[i], volumes.layouts[i]), payer);
             bill.add_bytes(glow_bytes(volumes.works[i], volumes.layouts[i]), payer);
         }
@@ -117,7 +118,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
             const VolumeLayout& layout = volumes.layouts[i];
             bill.add(sent_light_work(input, volumes.works[i], layout, request.facts.receivers),
-                     payer_of(volume_plan, layout.whole, "volume-surface"));
+                     payer_of(volume_plan, layout.whole, kVolumesToSurfaces));
         }
     }
 }
