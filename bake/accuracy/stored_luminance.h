@@ -18,14 +18,14 @@ namespace opaline::bake {
 /// seen against it.
 std::vector<float> view_of_rows(const RowLayout& layout, glm::vec3 normal, bool behind = false);
 
-/// Rows of one receiver, as a file keeps them: what measuring reads.
+/// Rows of one receiver, as a file stores them.
 struct RowSource {
     formats::SparseRowsView rows;
     formats::RowRange range;      ///< of its primitive
     std::uint32_t first_row = 0;  ///< the receiver's, counted from the start of the range
 };
 
-/// sum over a receiver's rows of h_k <T_k, L>, as the runtime would say; one row for each h.
+/// sum over a receiver's rows of h_k <T_k, L>, as the runtime evaluates it; one row for each h.
 Luminance relight_rows(const RowSource& source, std::span<const float> h,
                        std::span<const TestLight> lights);
 

@@ -30,7 +30,7 @@ std::uint32_t caustic_particles(std::uint32_t particles) {
                     std::min(kMost, particles > kMost / kTimes ? kMost : kTimes * particles));
 }
 
-// Whether a caustic is worth more particles than the rest.
+// Whether caustics get particles of their own.
 bool is_bright(const ParticleLight& light) {
     double all = 0, caustic = 0;
     for (const ElementDeposit& deposit : light.all)

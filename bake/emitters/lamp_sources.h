@@ -46,7 +46,7 @@ struct LampSources {
 };
 
 /// Textured triangles are cut into 256 parts. Facets without area are left out. `textures`: a part
-/// has the mean of its texture; null: what is at its middle.
+/// has the mean of its texture; null: the value at its middle.
 LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
                               const ScenePyramids* textures = nullptr);
 

@@ -28,7 +28,7 @@ class ShadowRays {
           packet_(rays_from(receiver.origin)),
           rays_(rays) {}
 
-    /// Adds `light` to what arrives if nothing is up to `reach` along the unit direction.
+    /// Adds `light` to the irradiance if nothing blocks the unit direction up to `reach`.
     void add(const glm::vec3& direction, float reach, const glm::dvec3& light) {
         packet_.dir_x[count_] = direction.x;
         packet_.dir_y[count_] = direction.y;
@@ -141,7 +141,7 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
                            const glm::dvec3& normal) {
     const double side = glm::dot(triangle.normal, point - triangle.corner[0]);
     if (side == 0 || (side < 0 && !triangle.is_two_sided)) return 0;
-    // Four corners at most, once what is below the horizon is cut away.
+    // At most four corners, once the part below the horizon is cut off.
     std::array<glm::dvec3, 4> way;
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {

@@ -4,8 +4,8 @@
 
 namespace opaline::bake {
 
-/// A ball of even density 1, 48 voxels of 1 m across and 12 mean free paths deep, that absorbs a
-/// hundredth: what rates of volumes are measured on.
+/// The volume on which rates are measured: a ball of even density 1, 48 voxels of 1 m across and 12
+/// mean free paths deep, that absorbs a hundredth.
 formats::Scene make_calibration_volume();
 
 /// Measures the seconds of a step of an optical depth, of a flight, and of light that joins a walk,

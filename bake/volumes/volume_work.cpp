@@ -19,9 +19,9 @@
 namespace opaline::bake {
 namespace {
 
-// A scattering of the reference's paths takes as long as so many steps of an optical depth, or
-// directions of light that join a walk; a step of a quasi-path, with the light of four directions,
-// as long as so many steps (tests/bench/RESULTS.md, "Volumes").
+// Costs in units of the reference's scatterings: a step of an optical depth takes 1/16 of one, a
+// cell of light that joins a walk 1/180. A step of a quasi-path, with the light of four directions,
+// takes as long as 4 steps of an optical depth (tests/bench/RESULTS.md, "Volumes").
 constexpr double kStepScattering = 1.0 / 16, kCellScattering = 1.0 / 180, kStepsOfPathStep = 4;
 
 constexpr float kForever = std::numeric_limits<float>::infinity();

@@ -9,9 +9,9 @@
 
 namespace opaline::runtime {
 
-/// Which volumes other than `own` may stand between its points and each sun, by number: those whose
-/// table the light of that sun crosses before or while it crosses the table of `own`. Never too
-/// few, but for rounding of places in the world.
+/// Numbers of the volumes other than `own` that may shadow its points from each sun: those whose
+/// table the light of that sun crosses before or while it crosses the table of `own`. Conservative
+/// up to the rounding of positions.
 std::vector<std::vector<std::size_t>> find_shades(std::span<const SunColumns> volumes,
                                                   std::size_t own,
                                                   std::span<const formats::Vec3> suns);

@@ -24,10 +24,11 @@ struct MarchOptions {
 
 struct MarchResult {
     formats::Rgb radiance;  ///< scattered or sent out toward the origin [W m^-2 sr^-1]
-    formats::Rgb transmittance{1, 1, 1};  ///< of what lies behind
+    formats::Rgb transmittance{1, 1, 1};  ///< of light from behind
 };
 
-/// What volumes add to a ray that is seen from its origin, and what they leave of the light behind:
+/// Light that volumes add to a ray seen from its origin, and their transmittance of light from
+/// behind:
 ///
 ///     L = int_begin^end T(t) sum_v (sigma_t,v albedo_v density_v(t) max(0, J_v(t, -direction)) +
 ///                                   glow_v(t)) dt,

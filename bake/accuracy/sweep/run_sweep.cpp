@@ -83,7 +83,7 @@ struct Sweep {
     // machine.
     double scale() const { return predicted > 0 ? measured / predicted : 2.0; }
 
-    // Why a point is not worth starting; empty: it is.
+    // Why a point is skipped; empty: it is not.
     std::string objection(const Prediction& cost, double seconds_left) const {
         if (cost.bytes > options.most_bytes) {
             return "the file would be " + amount(cost.bytes * 1e-9, "GB");
@@ -118,7 +118,7 @@ struct Sweep {
         return &known->second;
     }
 
-    // A point that differs in what was left to be chosen alone, and chose just that.
+    // A point that differs only in automatic choices, and made the same ones.
     PointRecord* find_chosen(const SweepPoint& point) {
         for (const Rung& rung : point.rungs) {
             if (rung.ladder.knob == nullptr || rung.ladder.knob->words.empty()) {

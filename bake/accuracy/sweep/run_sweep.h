@@ -34,7 +34,7 @@ struct SweepResult {
     std::uint64_t seed = 0;
     double mean_cosine = 0;  ///< of the first medium's phase function
     SweepSubject subject;
-    Quality base = Quality::preview;     ///< what the ladders change one knob of
+    Quality base = Quality::preview;     ///< preset of which the ladders change one knob
     std::vector<PlanEntry> plan;         ///< of the base: of materials
     std::vector<PlanEntry> volume_plan;  ///< and of volumes and layers
     std::vector<PointRecord> points;     ///< in the order in which they were baked
@@ -47,7 +47,7 @@ struct SweepResult {
     double seconds = 0;  ///< of the whole sweep
 };
 
-/// What is about to be baked, of how many points at most.
+/// The point about to be baked, and the largest number of points.
 struct SweepStep {
     std::size_t done = 0, total = 0;
     const std::string& label;

@@ -68,7 +68,7 @@ std::vector<ModelPair> make_pairs(std::span<const double> luminance, const Volum
     return pairs;
 }
 
-// The differences under even light, with those of what passes through.
+// The differences under even light, including light that passes through.
 std::vector<ModelPair> with_passing(std::vector<ModelPair> pairs, std::span<const double> through,
                                     const VolumeTruth& truth) {
     const std::size_t first = static_cast<std::size_t>(LightPlace::around) * through.size();

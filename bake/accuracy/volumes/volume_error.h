@@ -46,7 +46,7 @@ struct VolumeCheckOptions {
     double noise = 0.01;                 ///< relative to the truth: enough for any file
     double noise_share = 0.5;            ///< relative to the difference: enough for this file
     std::uint64_t max_events = 1000000;  ///< scatterings and surfaces met, of all rays
-    bool sees_surfaces = false;          ///< the file holds what surfaces send to volumes
+    bool sees_surfaces = false;          ///< the file holds light that surfaces send to volumes
 };
 
 /// Errors of `luminance` (march_probes) against a truth of the same probes. Under even light what

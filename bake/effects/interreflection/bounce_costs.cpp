@@ -18,8 +18,8 @@ namespace {
 // fewer.
 constexpr double kHitShare = 0.44, kClustersPerHit = 4;
 constexpr double kBounces = 6;
-// Receivers that trace rays of their own where there are sites, sites that the others read, and
-// sites at receivers of which the first say too little: of the statue on its floor.
+// Shares measured on the statue on its floor: receivers that trace rays of their own where there
+// are sites, sites that a receiver reads, and sites added where the first level is too sparse.
 constexpr double kOwnShare = 0.26, kSitesRead = 20, kAddedShare = 0.16;
 
 double count_sites(double receivers) {
@@ -43,7 +43,7 @@ double ray_work(const CostInput& input, double rays, double bands) {
 
 Work bounce_rows_work(const SubjectCost& cost) {
     const double sides = cost.layout.sheet ? 2 : 1;
-    // The light of a medium arrives at its samples, which stand for the receivers here.
+    // The light of a medium arrives at its samples instead of its receivers.
     const double rays = cost.layout.translucent && !cost.layout.at_entry
                             ? kRaysOfAveraged
                             : count_bounce_rays(cost.input.knobs[kBounceRays]);

@@ -19,7 +19,7 @@
 namespace opaline::bake {
 namespace {
 
-// Three rows more cost time and memory. From production on they are taken nearly always, because
+// Three more rows cost time and memory. From production on nearly all bodies have them, because
 // thin parts of a body err by more than the estimate for the whole (walks/README.md, "Views").
 double allowed_view_error(const Knobs& knobs) {
     return knobs.error_target > 0                 ? 0.3 * knobs.error_target

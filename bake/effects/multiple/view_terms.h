@@ -4,14 +4,14 @@
 
 namespace opaline::bake {
 
-/// Relative RMS that one row for all views errs by, over the views: an estimate from the body's
-/// mean chord in transport mean free paths and from the albedo (walks/README.md, "Views").
+/// Relative RMS error of one row for all views, over the views: an estimate from the body's mean
+/// chord in transport mean free paths and from the albedo (walks/README.md, "Views").
 double one_view_error(const formats::Medium& medium, const MaterialFacts& body);
 
-/// The same of four rows, linear in the view: the part of degree two of what a plate or a ball of
-/// the same mean chord shows. Of bodies that are no plates the lesser of both: which of their parts
-/// are round is not known. Open bodies, whose thickness is not known, count as plates of one mean
-/// free path.
+/// The same for four rows, linear in the view: the part of degree two of the radiance of a plate or
+/// a ball with the same mean chord. Bodies that are no plates take the smaller of both, because
+/// their round parts are unknown. Open bodies have no known thickness and count as plates of one
+/// mean free path.
 double four_views_error(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The rule `multiple.view`: rows where random walks that hold light of all orders are expected, 4

@@ -9,9 +9,9 @@
 namespace opaline::bake {
 
 /// A walk flies as light of one group of bands does and serves all groups. Its weights are those of
-/// the balance heuristic: what the path is worth in a band, over the sum of its densities in all
-/// groups (Veach, Guibas 1995, eq. 9 and 10), so that no band's weight is ever larger than that of
-/// walks of its own. The density in a group has the chance that a walk of its own survives.
+/// the balance heuristic: the contribution of the path in a band over the sum of its densities in
+/// all groups (Veach, Guibas 1995, eq. 9 and 10), so that no band's weight is ever larger than that
+/// of walks of its own. The density in a group has the chance that a walk of its own survives.
 struct WalkGroup {
     std::uint32_t flies_as = 0;  ///< index into WalkSpace::bands
     /// Of each group: walks that fly as it does, in the unit for which sums of weights are means.

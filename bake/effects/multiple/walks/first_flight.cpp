@@ -37,7 +37,7 @@ class FlightTracer {
             const WalkHit hit = *next;
             const float way = glm::distance(hit.position, position);
             if (!hit.is_own) {
-                // What stands in the body, or, through a hole, far from it.
+                // A surface inside the body or, through a hole, far away.
                 const float box = to_box(position, direction);
                 scatter_along(position, direction, std::min(way, box), view, left);
                 return way > box ? mean(left) : 0;

@@ -25,8 +25,8 @@ struct FlightNode {
 using FirstFlight = std::vector<FlightNode>;
 
 /// First flights of walks from a receiver, as follow_walk draws them in the space's first medium,
-/// with their reflections inside. Where a mesh has a hole a flight goes on to the space's box; the
-/// other flights make up for what is left of it there.
+/// with their reflections inside. Through a hole of the mesh a flight goes on to the space's box;
+/// the other flights are scaled up to replace the light that is lost there.
 FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views,
                                const BodyPoint& point);
 

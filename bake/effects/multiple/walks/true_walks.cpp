@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
 
-// Of the bands that a walk serves; all of it where one band stands for all.
+// Luminance of the bands that a walk serves; all of it where the bands are equal.
 double share_of(const WalkBands& bands, bool is_grey) {
     double share = 0;
     for (std::size_t b = 0; b < 3; ++b) {
@@ -84,7 +84,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
             }
             exits.clear();
             follow_walk(space, group, start, orders, random, exits, counts);
-            // One exit stands for all of the walk, drawn in proportion to its weight.
+            // One exit represents the walk, drawn in proportion to its weight.
             double sum = 0;
             const WalkExit* exit = nullptr;
             for (const WalkExit& e : exits) {

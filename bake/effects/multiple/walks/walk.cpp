@@ -106,8 +106,8 @@ class Walk {
         return bodies_.top() < space_.balls.size() ? space_.balls[bodies_.top()].get() : nullptr;
     }
 
-    // Whether a ball of the bank has room here. Where the grid is too coarse to tell, the nearest
-    // triangle is looked for, unless the walk cannot have come far enough from one.
+    // Whether a ball of the bank fits here. Where the grid is too coarse to decide, searches for
+    // the nearest triangle, unless the walk cannot have gone far enough from one.
     bool may_jump() {
         const BallBank* const bank = balls();
         if (bank == nullptr || !(weight_.sigma_t() > 0)) {

@@ -74,16 +74,16 @@ struct WalkStart {
     float depth = 0;  ///< [m] of `position` below the surface that the site lies on
 };
 
-/// Light that a walk finds: what arrives at `position` from outside along `direction` is seen at
-/// the start with `weight`.
+/// Light that a walk finds: radiance that arrives at `position` from outside along `direction`
+/// reaches the start with `weight`.
 struct WalkExit {
     glm::vec3 position{0};          ///< [m], on the boundary
     glm::vec3 normal{0};            ///< unit, outward, smooth
     glm::vec3 direction{0};         ///< unit, outside, away from the body
     std::array<float, 3> weight{};  ///< per band; 0 in bands that never scatter
-    /// How often it was scattered, over WalkSpace::diffuse_after. From 1 on `direction` says no
-    /// more of where the walk has been than `drift`, the way from the start over the length of the
-    /// walk: the mean of all directions inside.
+    /// Number of scatterings over WalkSpace::diffuse_after. From 1 on `direction` is as
+    /// uncorrelated with the walk's past as `drift`, the way from the start over the length of the
+    /// walk, which is the mean of all directions inside.
     float turned = 0;
     glm::vec3 drift{0};
     std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle
@@ -104,7 +104,7 @@ struct WalkCounts {
         0;                  ///< given up where more media lie in each other than MediumStack holds
     double unfinished = 0;  ///< weight that lost, endless and buried walks still had, in walks
 
-    /// The factor by which the walks that ended stand for those that did not (README.md, "The
+    /// Factor on finished walks that replaces the light of unfinished ones (README.md, "The
     /// estimator").
     double correction() const {
         const auto all = static_cast<double>(walks);
@@ -117,7 +117,7 @@ struct WalkCounts {
 /// Which light counts.
 struct WalkOrders {
     /// Light scattered this often at least; less often, if it was also reflected at a boundary
-    /// inside or went through another medium, but not without any scattering. 2: what is not single
+    /// inside or went through another medium, but not without any scattering. 2: all but single
     /// scattering; 1: all.
     std::uint32_t least = 2;
     /// Light scattered once alone counts for diffuse light as well: its exits are marked.
