@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "bake/encode/pack_holes.h"
-#include "bake/encode/pack_normal_maps.h"
 #include "bake/scene/lobe_record.h"
 #include "bake/scene/marble.h"
 

@@ -1,4 +1,4 @@
-#include "bake/example/contact.h"
+#include "bake/example/solid_mesh.h"
 
 #include <algorithm>
 #include <cstdint>

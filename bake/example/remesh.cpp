@@ -1,4 +1,4 @@
-#include "bake/example/remesh.h"
+#include "bake/example/solid_mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -55,4 +55,11 @@ struct PointOwner {
 PointOwner point_owner(std::uint32_t brick, const BrickBlock& block, std::uint32_t boxes,
                        const std::array<std::uint32_t, 3>& place);
 
+/// Numbers of the volumes other than `own` that may shadow its points from each sun: those whose
+/// table the light of that sun crosses before or while it crosses the table of `own`. Conservative
+/// up to the rounding of positions.
+std::vector<std::vector<std::size_t>> find_shades(std::span<const SunColumns> volumes,
+                                                  std::size_t own,
+                                                  std::span<const formats::Vec3> suns);
+
 }  // namespace opaline::runtime

@@ -9,7 +9,6 @@
 #include "runtime/parallel.h"
 #include "runtime/volumes/sun_columns.h"
 #include "runtime/volumes/sun_point.h"
-#include "runtime/volumes/sun_shadows.h"
 #include "runtime/volumes/volume_lattice.h"
 #include "runtime/volumes/volume_source.h"
 

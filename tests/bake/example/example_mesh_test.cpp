@@ -12,8 +12,7 @@
 #include <utility>
 
 #include "bake/example/example_scenes.h"
-#include "bake/example/polygonize.h"
-#include "bake/example/remesh.h"
+#include "bake/example/solid_mesh.h"
 
 namespace opaline::bake {
 namespace {
