@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Time and error for the gather's tolerance and the number of coefficients: the statue in jade,
-# multiple scattering alone, against the sum over all samples with 1024 coefficients. Prints a table of
+# multiple scattering alone, against the sum over all samples with 1024 coefficients. Figures are in
 # tests/bench/RESULTS.md.
 # usage: gather.sh OPALINE
 set -euo pipefail

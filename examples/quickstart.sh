@@ -1,24 +1,23 @@
 #!/usr/bin/env bash
-# From a bare Debian 12 to two pictures: installs what is missing, builds Opaline, makes the statue,
-# bakes it, and renders it under two lights.
+# From a bare Debian 12 to two pictures: installs what is missing, builds Opaline, makes a statue, bakes
+# it in jade, and renders it against the light: a studio's, and a low sun's.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
-build="$root/build-quickstart"
 out="$root/out"
 
 bash "$root/.ci/setup.sh"
-cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DOPALINE_BUILD_TESTS=OFF >/dev/null
-cmake --build "$build" --target opaline
-opaline="$build/opaline"
+cd "$root"
+cmake --preset release -DOPALINE_BUILD_TESTS=OFF >/dev/null
+cmake --build --preset release --target opaline
+opaline="$root/build-release/opaline"
 
 mkdir -p "$out"
 "$opaline" example statue -o "$out"
-# Four times the default coefficients: a hard sun needs them, soft light does not.
-"$opaline" bake "$out/statue.gltf" -o "$out/statue.opal" --coefficients 512
-"$opaline" render "$out/statue.opal" --light studio --size 1280x960 -o "$out/statue-studio.png"
-"$opaline" render "$out/statue.opal" --light sky:3,35 --size 1280x960 -o "$out/statue-sky.png"
+"$opaline" bake "$out/statue.gltf" --media "$root/examples/media/jade.json" -o "$out/jade.opal"
+"$opaline" render "$out/jade.opal" --light studio --rotate-light 210 --size 1280x960 -o "$out/jade-studio.png"
+"$opaline" render "$out/jade.opal" --light sky:3,25 --rotate-light 240 --size 1280x960 -o "$out/jade-sun.png"
 
 echo
 echo "The pictures are:"
-echo "  $out/statue-studio.png"
-echo "  $out/statue-sky.png"
+echo "  $out/jade-studio.png"
+echo "  $out/jade-sun.png"

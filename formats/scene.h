@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/image/image.h"
+#include "formats/opal/preview_image.h"
 #include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
 #include "formats/sparse_grid.h"
@@ -40,8 +41,8 @@ struct Marble {
     std::vector<Rgb> colors;  ///< from within a vein to halfway between two; 2 or more, in [0, 1]
 };
 
-/// How a texture goes on outside of [0, 1].
-enum class TextureWrap { repeat, clamp, mirror };
+/// How a texture is looked up along one axis.
+using TextureWrap = Wrap;
 
 /// An image over the surface of a body that says what is inside: a point inside has the value of
 /// the nearest point of the surface. Coordinates: Primitive::texcoord.
@@ -84,11 +85,17 @@ struct Medium {
     std::optional<Variation> variation = std::nullopt;
 };
 
-/// A surface without an inside, such as a leaf or paper: of the light that arrives on one side, the
+/// A surface that is lit and seen on both sides, such as a leaf, paper, a window pane or a
+/// double-sided wall: of the light that arrives on one side, the
 /// share base colour * reflect leaves on that side and base colour * transmit on the other one,
 /// both diffusely. With the base colour the two shares of a band add up to 1 at most.
 struct Sheet {
     Rgb reflect{1, 1, 1}, transmit{0, 0, 0};  ///< each in [0, 1]
+    /// Thin glass: of the light that meets it, the share clear * T passes straight, T that of two
+    /// smooth faces of index `eta` (opal/thin_glass.h). `reflect`, `transmit` and the gloss are of
+    /// the rest.
+    float clear = 0;   ///< in [0, 1]
+    float eta = 1.5f;  ///< >= 1; or 0: infinite
     /// The material's base colour, sides and metallic factor without it, for what replaces it.
     Rgb opaque_color{1, 1, 1};
     bool opaque_double_sided = false;
@@ -145,12 +152,21 @@ struct Material {
     std::optional<Medium> medium = std::nullopt;  ///< translucent; none: opaque
     std::optional<Sheet> sheet = std::nullopt;    ///< thin-walled; no medium then
     std::optional<Marble> marble = std::nullopt;  ///< multiplies the base colour
+    bool is_unstated_metal = false;  ///< a metal only because the file states neither a metallic
+                                     ///< factor nor a roughness, and glTF's default is a metal
 };
 
 /// The largest share of light that an opaque material may reflect diffusely besides its base
 /// colour: 1 - metallic; an image may make parts of a metal dielectric.
 inline float diffuse_share(const Material& material) {
     return material.gloss.image == kNone ? 1 - material.gloss.metallic : 1.0f;
+}
+
+/// A metal throughout: it reflects nothing diffusely. Rows of its receivers hold what other
+/// surfaces send to it, of which its lobe mirrors the mean where something blocks it
+/// (runtime/surface.h).
+inline bool is_metal(const Material& material) {
+    return !material.medium && !material.gloss.is_diffuse() && diffuse_share(material) == 0;
 }
 
 /// A medium that fills no closed surface: smoke, fog, a cloud. Its extinction at a point is
@@ -231,7 +247,9 @@ struct EmitterGroup {
 };
 
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
-/// Vertices keep the original order and count: receivers and output rows use this numbering.
+/// Vertices keep the original order: receivers and output rows use this numbering. Where NORMAL is
+/// missing and the faces of a vertex differ in their normals, copies of it follow on the last one;
+/// `index` says which face has which (formats/gltf/README.md, "Missing normals").
 struct Primitive {
     std::uint32_t node = 0, mesh = 0, primitive = 0;  ///< indices in the file, for messages
     std::string name;                                 ///< "node 'Vase' > mesh 3 > primitive 0"

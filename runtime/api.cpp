@@ -4,9 +4,12 @@
 #include <cstdio>
 #include <memory>
 #include <new>
+#include <optional>
+#include <span>
 #include <utility>
 
 #include "runtime/api_support.h"
+#include "runtime/parallel.h"
 #include "runtime/shade.h"
 #include "runtime/terms.h"
 
@@ -38,6 +41,25 @@ bool is_prefiltered_for(const opaline_light& light, const formats::AssetView& as
     });
     return has_levels && (light.distant.needs().gloss ||
                           std::ranges::none_of(asset.gloss, &formats::GlossRecord::is_glossy));
+}
+
+// The asset in these bytes, and its handle.
+opaline_status make_asset(std::span<const std::byte> bytes, formats::Checks checks,
+                          const formats::Memory& memory, opaline_asset** out) {
+    using runtime::api::fail;
+    formats::Result<formats::LoadedAsset> loaded = formats::read_opal(bytes, {}, checks, memory);
+    if (!loaded) {
+        return fail(loaded.error());
+    }
+    void* const place =
+        memory.allocate != nullptr
+            ? memory.allocate(memory.user, sizeof(opaline_asset), alignof(opaline_asset))
+            : ::operator new(sizeof(opaline_asset), std::nothrow);
+    if (place == nullptr) {
+        return fail(OPALINE_OUT_OF_MEMORY, "not enough memory");
+    }
+    *out = new (place) opaline_asset{std::move(*loaded), ++last_asset_id, memory, std::nullopt};
+    return OPALINE_OK;
 }
 
 }  // namespace
@@ -119,6 +141,11 @@ const char* opaline_last_error(void) {
     return last_error;
 }
 
+void opaline_set_thread_pool(void (*run)(void*, uint32_t, void (*)(void*, uint32_t), void*),
+                             void* user) {
+    runtime::use_thread_pool({run, user});
+}
+
 opaline_status opaline_asset_load(const void* bytes, size_t size, opaline_asset** out) {
     return opaline_asset_load_with(bytes, size, nullptr, out);
 }
@@ -148,20 +175,24 @@ opaline_status opaline_asset_load_with(const void* bytes, size_t size,
         memory = {options->allocate, options->release, options->user};
     }
     return guarded([&] {
-        formats::Result<formats::LoadedAsset> loaded =
-            formats::read_opal({static_cast<const std::byte*>(bytes), size}, {}, checks, memory);
-        if (!loaded) {
-            return fail(loaded.error());
+        return make_asset({static_cast<const std::byte*>(bytes), size}, checks, memory, out);
+    });
+}
+
+opaline_status opaline_asset_load_path(const char* path, opaline_asset** out) {
+    if (path == nullptr || out == nullptr) {
+        return null_argument();
+    }
+    return guarded([&] {
+        formats::Result<formats::FileBytes> file = formats::FileBytes::open(path);
+        if (!file) {
+            return fail(file.error());
         }
-        void* const place =
-            memory.allocate != nullptr
-                ? memory.allocate(memory.user, sizeof(opaline_asset), alignof(opaline_asset))
-                : ::operator new(sizeof(opaline_asset), std::nothrow);
-        if (place == nullptr) {
-            return fail(OPALINE_OUT_OF_MEMORY, "not enough memory");
+        const opaline_status status = make_asset(file->bytes(), formats::Checks::full, {}, out);
+        if (status == OPALINE_OK) {
+            (*out)->file = std::move(*file);
         }
-        *out = new (place) opaline_asset{std::move(*loaded), ++last_asset_id, memory};
-        return OPALINE_OK;
+        return status;
     });
 }
 

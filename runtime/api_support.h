@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/opal/file_bytes.h"
 #include "formats/opal/read_opal.h"
 #include "formats/opal/result.h"
 #include "formats/opal/vec3.h"
@@ -22,6 +23,7 @@ struct opaline_asset {
     opaline::formats::LoadedAsset loaded;
     std::uint64_t id = 0;             // unlike its address, never that of another one
     opaline::formats::Memory memory;  // that the handle itself comes from too
+    std::optional<opaline::formats::FileBytes> file;  // of opaline_asset_load_path: holds `loaded`
 };
 
 struct opaline_light {

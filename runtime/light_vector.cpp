@@ -81,13 +81,4 @@ void fill_light_vector(std::span<const double> integral, std::span<double> scrat
     }
 }
 
-LightVector combine(float a, const LightVector& first, float b, const LightVector& second) {
-    assert(first.n == second.n);
-    LightVector sum = first;
-    for (std::size_t i = 0; i < sum.rgba.size(); ++i) {
-        sum.rgba[i] = a * first.rgba[i] + b * second.rgba[i];
-    }
-    return sum;
-}
-
 }  // namespace opaline::runtime

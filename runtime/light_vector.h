@@ -54,7 +54,4 @@ LightVector make_light_vector(std::span<const double> integral, std::uint32_t n)
 void fill_light_vector(std::span<const double> integral, std::span<double> scratch,
                        LightVector& light);
 
-/// Light that is the sum a * first + b * second; both of the same n.
-LightVector combine(float a, const LightVector& first, float b, const LightVector& second);
-
 }  // namespace opaline::runtime

@@ -55,12 +55,26 @@ OPALINE_API const char* opaline_status_string(opaline_status status);
    failing call on this thread. Any thread. */
 OPALINE_API const char* opaline_last_error(void);
 
+/* A host's thread pool: `run` calls task(context, i) for each i < count, on any threads and in any
+   order, and returns when all calls have. Functions that are allowed more than one thread then give
+   it as many tasks and start no threads; results have the same bits. NULL: threads are started
+   again. For the whole process, and not while another function runs. */
+OPALINE_API void opaline_set_thread_pool(void (*run)(void* user, uint32_t count,
+                                                     void (*task)(void* context, uint32_t index),
+                                                     void* context),
+                                         void* user);
+
 /* --- Assets ------------------------------------------------------------------------------- */
 
 /* Reads an asset in place: `bytes`, aligned to 64 (memory maps are), must stay unchanged until
    the asset is released; only compressed sections are copied. The whole file is checked once,
    checksums included, so untrusted input is safe. Any thread. */
 OPALINE_API opaline_status opaline_asset_load(const void* bytes, size_t size, opaline_asset** out);
+
+/* The same of a file, whose bytes the asset reads and keeps on the C++ heap until it is released.
+   `path` is the system's; a file that is missing or cannot be read is OPALINE_BAD_FILE. Any
+   thread. */
+OPALINE_API opaline_status opaline_asset_load_path(const char* path, opaline_asset** out);
 
 typedef enum opaline_load_flags {
     OPALINE_LOAD_DEFAULT = 0,

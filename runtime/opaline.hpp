@@ -41,6 +41,13 @@ struct Made {
     return {AssetHandle(asset), status};
 }
 
+/// See opaline_asset_load_path.
+[[nodiscard]] inline Made<AssetHandle> load_asset(const char* path) noexcept {
+    opaline_asset* asset = nullptr;
+    const opaline_status status = opaline_asset_load_path(path, &asset);
+    return {AssetHandle(asset), status};
+}
+
 /// See opaline_light_create.
 [[nodiscard]] inline Made<LightHandle> create_light(const AssetHandle& asset) noexcept {
     opaline_light* light = nullptr;

@@ -125,7 +125,7 @@ OPALINE_API opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t
 /* Images of surfaces, for opaline_images.glsl: all share the texture coordinates of the receivers.
 
        vec3 opaline_sample_image(usampler2D image, vec2 texcoord, ivec2 wrap, bool is_srgb)
-           bilinear in linear light; is_srgb for base colour and emission, which are decoded.
+           bilinear in linear light, or the nearest texel as `wrap` says; is_srgb for base colour and emission, which are decoded.
        bool opaline_covers(float alpha, vec2 cutoff_mode, uvec2 pixel, uint triangle)
            whether a sample sees a surface of that alpha; `triangle`: any number of it. Blends are
            spread over samples, so that nothing needs sorting; hosts that sort may blend instead. */

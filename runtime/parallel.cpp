@@ -7,6 +7,16 @@
 
 namespace opaline::runtime {
 
+namespace {
+
+ThreadPool host_pool;
+
+}  // namespace
+
+void use_thread_pool(ThreadPool pool) {
+    host_pool = pool;
+}
+
 void run_ranges(std::uint32_t count, std::uint32_t grain, unsigned threads,
                 void (*work)(const void*, std::uint32_t, std::uint32_t), const void* context) {
     const std::uint32_t ranges = count / grain + (count % grain != 0 ? 1 : 0);
@@ -24,6 +34,14 @@ void run_ranges(std::uint32_t count, std::uint32_t grain, unsigned threads,
             failure = std::current_exception();
         }
     };
+    if (workers > 1 && host_pool.run != nullptr) {
+        host_pool.run(
+            host_pool.user, workers,
+            [](void* own, std::uint32_t) { (*static_cast<decltype(run)*>(own))(); },
+            const_cast<void*>(static_cast<const void*>(&run)));
+        if (failure) std::rethrow_exception(failure);
+        return;
+    }
     std::vector<std::thread> others;
     if (workers > 1) {
         others.reserve(workers - 1);

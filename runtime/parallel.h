@@ -9,6 +9,18 @@ namespace opaline::runtime {
 
 inline constexpr unsigned kMaxThreads = 256;
 
+/// A host's thread pool: calls task(context, i) for each i < count, on any threads and in any
+/// order, and returns when all calls have.
+struct ThreadPool {
+    void (*run)(void* user, std::uint32_t count, void (*task)(void* context, std::uint32_t index),
+                void* context) = nullptr;
+    void* user = nullptr;
+};
+
+/// Runs on this pool what otherwise starts threads; without a function, threads are started again.
+/// Not while other work runs.
+void use_thread_pool(ThreadPool pool);
+
 /// 0 means one thread per core.
 inline unsigned resolve_threads(unsigned threads) {
     return std::clamp(threads != 0 ? threads : std::thread::hardware_concurrency(), 1u,

@@ -17,6 +17,20 @@ Rgb shade_translucent(const SurfaceMaterial& material, const SurfacePoint& point
                                               point.open_axis, point.open_fraction));
 }
 
+// What a metal mirrors of surfaces: of its lobe `blocked` meets them, and their mean radiance is
+// what they send to the point over the part of its horizon that they cover.
+Rgb mirrored_surfaces(const formats::GlossRecord& gloss, const formats::GlossSurface& surface,
+                      const SurfacePoint& point, float blocked) {
+    constexpr float kLeastCovered = 1.0f / 64;
+    const float covered = 1 - point.open_fraction;
+    if (gloss.metallic != 1 || gloss.image != formats::kNoImage || covered < kLeastCovered) {
+        return {};
+    }
+    const Rgb albedo =
+        formats::eval_gloss_albedo(surface, gloss_cosine(point.view.cosine)).specular;
+    return blocked / covered * (albedo * point.radiance);
+}
+
 Rgb shade_gloss(const SurfaceMaterial& material, const SurfacePoint& point) {
     const formats::GlossSurface surface = formats::make_gloss_surface(
         *material.gloss, point.base_color, point.metallic, point.roughness);
@@ -28,7 +42,8 @@ Rgb shade_gloss(const SurfaceMaterial& material, const SurfacePoint& point) {
         eval_gloss(material.light->gloss, material.light->rotation, surface, point.view);
     const float visible =
         gloss_visibility(point.view, surface.roughness, point.open_axis, point.open_fraction);
-    return displayable(reflected + visible * mirrored);
+    return displayable(reflected + visible * mirrored +
+                       mirrored_surfaces(*material.gloss, surface, point, 1 - visible));
 }
 
 }  // namespace

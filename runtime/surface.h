@@ -62,7 +62,10 @@ inline formats::Rgb displayable(formats::Rgb c) {
 
 /// Outgoing radiance toward the eye, finite and not negative: diffuse base_color * radiance;
 /// translucent base_color * Ft * radiance, plus what the boundary mirrors; glossy opaque
-/// base_color * radiance * (1 - metallic) (1 - max E), plus the specular lobe.
+/// base_color * radiance * (1 - metallic) (1 - max E), plus the specular lobe. Rows of a metal
+/// (metallic 1 without an image) hold what surfaces send to it: where its lobe is blocked it
+/// mirrors their mean radiance, E (1 - v) / (1 - a) radiance, v what openness leaves of the lobe
+/// and a the open fraction.
 /// What the surface sends out by itself is added to all of them.
 formats::Rgb shade_surface(const SurfaceMaterial& material, const SurfacePoint& point);
 

@@ -26,7 +26,7 @@ struct Taps {
 };
 
 std::uint32_t wrapped(std::int64_t i, std::int64_t size, Wrap wrap) {
-    switch (wrap) {
+    switch (formats::edge_of(wrap)) {
         case Wrap::clamp:
             i = i < 0 ? 0 : (i >= size ? size - 1 : i);
             break;
@@ -34,7 +34,7 @@ std::uint32_t wrapped(std::int64_t i, std::int64_t size, Wrap wrap) {
             i = ((i % (2 * size)) + 2 * size) % (2 * size);
             i = i < size ? i : 2 * size - 1 - i;
             break;
-        case Wrap::repeat:
+        default:
             i = ((i % size) + size) % size;
             break;
     }
@@ -48,8 +48,9 @@ Taps find_taps(float coordinate, std::uint32_t size, Wrap wrap) {
     // Brought into one period first: a large coordinate would not fit an integer. Two periods are
     // one of the mirrored image.
     double x = static_cast<double>(coordinate);
-    x = wrap == Wrap::clamp ? std::fmin(std::fmax(x, 0.0), 1.0) : x - 2.0 * std::floor(0.5 * x);
-    const double scaled = x * size - 0.5;
+    x = formats::edge_of(wrap) == Wrap::clamp ? std::fmin(std::fmax(x, 0.0), 1.0)
+                                              : x - 2.0 * std::floor(0.5 * x);
+    const double scaled = formats::is_nearest(wrap) ? std::floor(x * size) : x * size - 0.5;
     const double below = std::floor(scaled);
     const auto i = static_cast<std::int64_t>(below);
     return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap), static_cast<float>(scaled - below)};

@@ -10,9 +10,9 @@ namespace opaline::runtime {
 /// Linear value of an 8-bit sRGB code (IEC 61966-2-1).
 float linear_from_srgb(std::uint8_t code);
 
-/// Bilinear sample of an image in linear light; texel centres at ((column + 1/2) / width,
-/// (row + 1/2) / height), uv (0, 0) at the top left as in glTF. A coordinate that is not finite
-/// samples at 0. Precondition: the image is not empty.
+/// Bilinear sample of an image in linear light, or its nearest texel (formats::is_nearest); texel
+/// centres at ((column + 1/2) / width, (row + 1/2) / height), uv (0, 0) at the top left as in glTF.
+/// A coordinate that is not finite samples at 0. Precondition: the image is not empty.
 formats::Rgb sample_image_linear(const formats::PreviewImage& image, formats::Float2 uv,
                                  formats::Wrap wrap_u, formats::Wrap wrap_v);
 

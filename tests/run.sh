@@ -6,7 +6,7 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 
 bash .ci/setup.sh
-cmake --preset release >/dev/null
+cmake --preset release -DOPALINE_BUILD_TESTS=ON >/dev/null
 cmake --build --preset release
 results=$root/build-release/test-results.xml
 failed=0

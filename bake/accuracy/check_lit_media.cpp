@@ -36,7 +36,7 @@ std::vector<ReferenceReceiver> choose_translucent(const ReferenceScene& scene,
         return asset.primitives[receiver.primitive].shading != formats::Shading::translucent;
     });
     if (receivers.size() > kCheckedReceivers) {
-        // Evenly spaced: they stand in the order of the scene.
+        // Evenly spaced in the order of the scene.
         std::vector<ReferenceReceiver> kept;
         kept.reserve(kCheckedReceivers);
         for (std::size_t i = 0; i < kCheckedReceivers; ++i) {

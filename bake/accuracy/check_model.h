@@ -64,12 +64,12 @@ struct ModelErrorReport {
 struct ModelCheckOptions {
     std::uint32_t receivers = 192;  ///< to check; fewer if the scene has fewer
     std::uint64_t seed = 0;
-    /// The terms that correspond to the file's effects. With interreflection but without what
-    /// crosses bodies unscattered, files hold none of the former that crossed a body so.
+    /// The terms that correspond to the file's effects. Files with interreflection but without
+    /// transmission hold no bounced light that crossed a body unscattered.
     TermSet simulated = TermSet::diffuse | TermSet::single | TermSet::multiple;
-    /// It holds what volumes scatter to surfaces, too.
+    /// It also holds light that volumes scatter to surfaces.
     bool lit_by_volumes = false;
-    /// Of that, what surfaces had sent to the volumes, too.
+    /// It also holds the part of that which surfaces had sent to the volumes.
     bool volumes_see_surfaces = false;
     double noise = 0.01;                  ///< relative to the RMS of the truth: enough for any file
     double noise_share = 0.25;            ///< relative to the difference: enough for this file
@@ -81,11 +81,10 @@ TermSet held_light(const EffectTable& effects, std::span<const PlanEntry> plan);
 
 /// Compares `asset`, baked from `scene`, with path tracing of the same terms; this measures the
 /// error of diffusion and straight paths. Other light, such as interreflection, is not compared but
-/// stated as `missing`; so is what volumes scatter to surfaces that send it on, and what surfaces
+/// stated as `missing`; so is light of volumes that surfaces reflect on, and light that surfaces
 /// send to volumes. Light that receivers mirror is left out on both sides; that of opaque ones is
-/// compared by itself
-/// (`mirrored`). Receivers inside a body, on a sharp edge, or with another surface close behind
-/// them in their own body are left out.
+/// compared by itself (`mirrored`). Receivers inside a body, on a sharp edge, or with another
+/// surface close behind them in their own body are left out.
 ///
 /// Behind a refracting boundary a path hits the sun's disc by chance only. Scenes with such bodies
 /// are therefore checked without suns, also without the sun of `sky`; `suns` states these by

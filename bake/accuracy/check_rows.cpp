@@ -10,9 +10,28 @@
 #include "bake/accuracy/surface_probes.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/receivers/used_vertices.h"
+#include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {
+
+// Toward the eye inside the medium; 0 along the normal.
+glm::vec3 seen_inside(const SubjectTruth& truth, const CheckPoint& point) {
+    if (point.to_eye == glm::vec3(0)) {
+        return point.to_eye;
+    }
+    const float eta = truth.parts.front().inputs.medium().eta;
+    const float cosine = glm::dot(point.body.normal, point.to_eye);
+    const auto inside =
+        static_cast<float>(refracted_cosine(static_cast<double>(cosine), static_cast<double>(eta)));
+    return glm::normalize((point.to_eye - cosine * point.body.normal) / eta +
+                          inside * point.body.normal);
+}
+
+// Below index 1 nothing is seen beyond the critical angle.
+bool enters_everywhere(const SubjectTruth& truth) {
+    return truth.parts.front().inputs.medium().eta >= 1;
+}
 
 EffectCheck check_subject(const SubjectTruth& truth, const SubjectState& subject,
                           const formats::AssetView& asset, std::span<const CheckPoint> points,
@@ -26,14 +45,18 @@ EffectCheck check_subject(const SubjectTruth& truth, const SubjectState& subject
     for_each_block_in_order(
         points.size(), 1, truth.parts.front().inputs.context,
         [&](Range range) {
-            const CheckPoint& point = points[range.begin];
+            CheckPoint point = points[range.begin];
+            if (!subject.layout.all_orders || !enters_everywhere(truth)) {
+                point.to_eye = glm::vec3(0);  // other models look along the normal alone
+            }
             CheckedPoint found{point.primitive, {}, 0};
             if (point.material == subject.material && range.begin % step == 0) {
-                append_pairs(
-                    relight_point(asset, point, subject.layout, lights),
-                    eval_truth(truth, {point.receiver, point.body, point.key, point.behind},
-                               found.rays),
-                    found.pairs);
+                append_pairs(relight_point(asset, point, subject.layout, lights),
+                             eval_truth(truth,
+                                        {point.receiver, point.body, point.key, point.behind,
+                                         seen_inside(truth, point)},
+                                        found.rays),
+                             found.pairs);
             }
             return found;
         },
@@ -71,6 +94,12 @@ ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset
                             {drawn.size(), seed, static_cast<std::uint32_t>(all)}, context);
     turn_thin_walled(bake.inputs.scene, receivers);
     turn_thin_walled(bake.inputs.scene, between);
+    std::vector<glm::vec3> normals;
+    for (const formats::Primitive& p : bake.inputs.scene.primitives) {
+        normals.insert(normals.end(), p.normal.begin(), p.normal.end());
+    }
+    turn_views(normals, seed, receivers);
+    turn_views(normals, seed, between);
     std::vector<EffectCheck> checks;
     for (const SubjectState& subject : bake.subjects) {
         const SubjectTruth truth =

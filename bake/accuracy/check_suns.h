@@ -14,11 +14,11 @@
 namespace opaline::bake {
 
 /// Compares a file with path tracing under single suns at those of `receivers` (along their
-/// normals) behind whose boundary light is refracted. There no straight line leads from a
-/// scattering to a sun, and a path ends in it by chance alone: so the suns are Suns::degrees wide,
-/// evenly spread over the sphere, and every path serves all of them. Their irradiance is 1 each.
-/// Takes three times `options.max_events` events. Nothing: no receiver is such. The bits are the
-/// same for any number of threads. Errors: interrupted.
+/// normals) that have a refracting boundary. Refraction bends the way from a scattering to a sun,
+/// so paths hit it by chance only. The suns are therefore Suns::degrees wide and evenly spread over
+/// the sphere, and every path serves all of them. Their irradiance is 1 each. Takes three times
+/// `options.max_events` events. Nothing: no receiver is such. The bits are the same for any number
+/// of threads. Errors: interrupted.
 formats::Result<std::optional<ModelErrorReport::Suns>> check_suns(
     const ModelScenes& scenes, const formats::AssetView& asset,
     std::span<const ReferenceReceiver> receivers, const ModelCheckOptions& options,

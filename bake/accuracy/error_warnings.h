@@ -21,13 +21,13 @@ std::string error_percent(double share);
 /// drafts, 10 % of everything finer.
 double acceptable_error(Quality quality);
 
-/// Whether neither receivers nor what lies between them err by more than Knobs::error_target, the
-/// models' error included.
+/// Whether the error at receivers and the error between them, the models' included, are at most
+/// Knobs::error_target.
 bool meets_target(const ErrorReport& error, const Knobs& knobs);
 
-/// Says where the self-check found too much, and what to change. With Knobs::error_target: between
-/// receivers alone, more than Knobs::numerical_target(); what it found at receivers is for the
-/// pilot to explain. Without: wherever the lower end of the interval is above acceptable_error.
+/// Warnings where the self-check found too large an error, with a remedy. With Knobs::error_target:
+/// between receivers alone, above Knobs::numerical_target(); the pilot explains errors at
+/// receivers. Without: wherever the lower end of the interval is above acceptable_error.
 std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
                                                          const Knobs& knobs,
                                                          const ErrorReport& error);

@@ -109,8 +109,8 @@ double relative_rms(std::span<const CheckedPair> pairs) {
 
 namespace {
 
-// Few receivers, at the edges of shadows, make most of an error. With a chance of e^-2, none of n
-// drawn receivers is from a share of 2/n of all, and resamples cannot hold what was not drawn.
+// Few receivers, at the edges of shadows, cause most of an error. With a chance of e^-2 none of n
+// drawn receivers is from a given share of 2/n of all, and resamples never contain them.
 constexpr std::size_t kUnseen = 2;
 
 struct Sums {

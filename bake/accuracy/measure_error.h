@@ -50,11 +50,11 @@ struct CheckedPair {
 void append_pairs(const Luminance& found, const TwoEstimates& truth,
                   std::vector<CheckedPair>& pairs);
 
-/// What one effect's check found: the pairs of each point stand together, one per light.
+/// Result of one effect's check: the pairs of a point are consecutive, one per light.
 struct EffectCheck {
     std::string effect, reference;
     std::vector<CheckedPair> pairs;
-    std::vector<std::uint32_t> primitive;  ///< of each point; empty: nobody asks
+    std::vector<std::uint32_t> primitive;  ///< of each point; may be empty
     std::uint64_t rays = 0;
     bool between = false;  ///< at points between receivers
 };

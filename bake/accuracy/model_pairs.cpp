@@ -14,8 +14,8 @@ bool holds_crossed_light(TermSet compared) {
     return has_all(compared, TermSet::interreflection | TermSet::unscattered);
 }
 
-// Mean luminance of what is not compared. Light of the scene's own emitters depends on no
-// environment and is no part of it.
+// Mean luminance of the light that is not compared. Light of the scene's own emitters does not
+// depend on the environment and is left out.
 formats::Result<double> measure_missing(const PathSpace& space,
                                         std::span<const ReferenceReceiver> receivers,
                                         TermSet compared, EstimateOptions wanted,
@@ -163,7 +163,8 @@ formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const Mo
     if (!check) {
         return check;
     }
-    // Volumes send light along all kinds of paths: then all of it is measured, less what was held.
+    // Volumes send light along all kinds of paths: trace all of it, less the light that the file
+    // holds.
     const bool has_volumes = scenes.without_scattering.has_value();
     EstimateOptions wanted;
     wanted.seed = options.seed;

@@ -54,7 +54,7 @@ struct LightCheck {
 std::vector<PathSpace> held_light_spaces(const ModelScenes& scenes, const LightSampler& sampler,
                                          const ModelCheckOptions& options);
 
-/// Of the paths of space number `space` of those: their noise must not be alike.
+/// Of the paths of space number `space` of those, whose noise must be independent.
 std::uint64_t seed_of_space(std::uint64_t seed, std::size_t space);
 
 /// Compares `baked`, luminance by receiver, with path tracing of the terms of `spaces`, added up.
@@ -65,8 +65,8 @@ formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
                                         std::span<const double> baked,
                                         const ModelCheckOptions& options, const Context& context);
 
-/// The same of what files simulate without mirror reflection, and what is missing: other terms, and
-/// what volumes scatter to surfaces, but for what files hold of it.
+/// The same for the light that files simulate without mirror reflection, and for missing light:
+/// other terms, and light that volumes scatter to surfaces unless the file holds it.
 formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const ModelLight& light,
                                              std::span<const ReferenceReceiver> receivers,
                                              std::span<const double> baked,

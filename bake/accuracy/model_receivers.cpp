@@ -47,9 +47,9 @@ bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) 
     return hit && scene.medium_of[input.primitives[hit->primitive].material] == formats::kNone;
 }
 
-// Its body ends just behind it and begins again: a fold of the mesh that lies on itself. Hardly
-// anything scatters between; light from below the gap has met a second surface, and is not
-// simulated as such (README.md).
+// Its body ends just behind it and begins again: a fold of the mesh that lies on itself. Hardly any
+// light scatters between. Light from below the gap has met a second surface, which bakes ignore
+// (README.md).
 bool is_folded(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
     if (receiver.medium == formats::kNone) {
         return false;
@@ -69,7 +69,7 @@ bool is_folded(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
             return true;
         }
         reach -= hit->distance;
-        from = leave_surface(*hit, down);
+        from = go_straight_on(from, leave_surface(*hit, down));
     }
     return false;
 }
@@ -82,8 +82,8 @@ bool is_on_edge(const ReferenceReceiver& receiver) {
            glm::dot(glm::normalize(receiver.outside - receiver.inside), receiver.normal) < kSharp;
 }
 
-// Of each primitive, the vertices with triangles that turn more than 60 degrees from their normal
-// and others that do not: ends and folds of the mesh at which no normal is right.
+// Marks vertices with triangles on both sides of 60 degrees from their normal: ends and folds of
+// the mesh, at which no normal is right.
 std::vector<std::vector<bool>> find_creases(const formats::Scene& scene) {
     constexpr float kSharp = 0.5f;
     std::vector<std::vector<bool>> creased;

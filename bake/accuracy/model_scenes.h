@@ -9,8 +9,8 @@
 
 namespace opaline::bake {
 
-/// What surfaces of a file are compared with. Volumes dim what surfaces of a file send to each
-/// other, but scatter none of it.
+/// The scenes with which surfaces of a file are compared. Volumes of a file dim light between
+/// surfaces, but scatter none of it.
 struct ModelScenes {
     std::unique_ptr<const formats::Scene> facing;     ///< bodies face outward
     std::unique_ptr<const formats::Scene> absorbing;  ///< null: there are no volumes

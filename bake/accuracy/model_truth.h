@@ -23,7 +23,7 @@ formats::Result<ModelProbes> choose_model_probes(const formats::Scene& scene,
                                                  std::uint32_t receivers, std::uint64_t seed,
                                                  const Context& context);
 
-/// Path tracing at the probes, light by light, that any number of files are compared with: the
+/// Path tracing at the probes, light by light, for comparison with any number of files: the
 /// differences are those of a black file. Traces until the noise of a light is `options.noise` or
 /// its events are used up. Errors: resource, interrupted.
 formats::Result<std::vector<LightCheck>> trace_model_truth(const formats::Scene& scene,

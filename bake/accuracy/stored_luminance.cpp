@@ -86,9 +86,8 @@ Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point
         }
         const std::uint32_t v = point.vertex[k];
         const std::vector<float> h =
-            layout.translucent
-                ? view_from_far(layout, primitive.eta, asset.normal[v], point.body.normal)
-                : view_of_rows(layout, point.body.normal, point.behind);
+            layout.translucent ? view_from_far(layout, primitive.eta, asset.normal[v], point.view())
+                               : view_of_rows(layout, point.body.normal, point.behind);
         add_luminance({asset.transport, range, (v - primitive.first_vertex) * primitive.terms}, h,
                       point.weight[k], {band, sum});
     }

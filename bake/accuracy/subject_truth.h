@@ -9,7 +9,7 @@
 
 namespace opaline::bake {
 
-/// What the receivers of one subject truly send out along their normals, but for the factors that
+/// True radiance of the receivers of one subject along their normals, but for the factors that
 /// the runtime applies: the sum over the effects that fill its rows.
 struct SubjectTruth {
     struct Part {

@@ -20,7 +20,7 @@ struct ProbeOptions {
 /// Random points of the surface, uniform by area over the scene's `primitives`, one in each of
 /// `count` parts of equal area. They lie on the triangles; their normals are interpolated, and
 /// their rays start where the smooth surface would be (surface_samples.h). Points that
-/// hidden_receivers.h calls hidden are left out: nobody sees them.
+/// hidden_receivers.h calls hidden are left out.
 std::vector<CheckPoint> draw_surface_probes(const formats::Scene& scene, const RayScene& rays,
                                             const std::vector<std::uint32_t>& primitives,
                                             const ProbeOptions& options, const Context& context);

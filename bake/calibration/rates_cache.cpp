@@ -1,5 +1,8 @@
 #include "bake/calibration/rates_cache.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -61,7 +64,7 @@ std::filesystem::path rates_path() {
     return folder.empty() ? folder : folder / "calibration.json";
 }
 
-std::optional<Rates> read_rates(const std::filesystem::path& path, const MachineKey& machine) {
+std::optional<StageRates> read_rates(const std::filesystem::path& path, const MachineKey& machine) {
     std::error_code ignored;
     if (!std::filesystem::is_regular_file(path, ignored)) {
         return std::nullopt;
@@ -69,29 +72,33 @@ std::optional<Rates> read_rates(const std::filesystem::path& path, const Machine
     std::ifstream file(path, std::ios::binary);
     const Json root = Json::parse(file, nullptr, false);
     // Compare with the text as written, because writing changes names that are not UTF-8.
-    if (!root.is_object() || !root.contains("machine") || !root.contains("rates") ||
-        dump(root["machine"]) != dump(key_json(machine))) {
+    if (!root.is_object() || !root.contains("machine") || !root.contains("stages") ||
+        !root["stages"].is_object() || dump(root["machine"]) != dump(key_json(machine))) {
         return std::nullopt;
     }
-    Rates rates;
-    bool is_sound = root["rates"].is_object();
-    visit_rates(rates, [&](const char* name, double& rate) {
-        const auto found = is_sound ? root["rates"].find(name) : root.end();
-        if (!is_sound || found == root["rates"].end() || !found->is_number()) {
-            is_sound = false;
-            return;
+    StageRates rates;
+    for (const auto& [kind, learnt] : root["stages"].items()) {
+        if (!learnt.is_object() || !learnt.contains("factor") || !learnt["factor"].is_number() ||
+            !learnt.contains("bakes") || !learnt["bakes"].is_number_unsigned()) {
+            return std::nullopt;
         }
-        rate = found->get<double>();
-        is_sound = std::isfinite(rate) && rate >= 0;
-    });
-    return is_sound ? std::optional(rates) : std::nullopt;
+        const auto factor = learnt["factor"].get<double>();
+        if (!std::isfinite(factor) || !(factor > 0)) {
+            return std::nullopt;
+        }
+        rates.kinds[kind] = {factor, learnt["bakes"].get<std::uint32_t>()};
+    }
+    return rates;
 }
 
 formats::Status write_rates(const std::filesystem::path& path, const MachineKey& machine,
-                            const Rates& rates) {
+                            const StageRates& rates) {
     Json root;
     root["machine"] = key_json(machine);
-    visit_rates(rates, [&](const char* name, double rate) { root["rates"][name] = rate; });
+    root["stages"] = Json::object();
+    for (const auto& [kind, learnt] : rates.kinds) {
+        root["stages"][kind] = {{"factor", learnt.factor}, {"bakes", learnt.bakes}};
+    }
     std::error_code error;
     std::filesystem::create_directories(path.parent_path(), error);
     if (error) {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "bake/plan/rates.h"
+#include "bake/plan/stage_rates.h"
 #include "formats/opal/result.h"
 
 namespace opaline::bake {
@@ -27,11 +27,12 @@ std::filesystem::path cache_folder();
 std::filesystem::path rates_path();
 
 /// The rates in a file. Nothing if the file is missing, unreadable, damaged, or of another machine.
-std::optional<Rates> read_rates(const std::filesystem::path& file, const MachineKey& machine);
+/// A damaged entry damages all.
+std::optional<StageRates> read_rates(const std::filesystem::path& file, const MachineKey& machine);
 
 /// Writes the rates to a file, whole or not at all, and creates its folder if necessary. Errors:
 /// resource.
 formats::Status write_rates(const std::filesystem::path& file, const MachineKey& machine,
-                            const Rates& rates);
+                            const StageRates& rates);
 
 }  // namespace opaline::bake

@@ -29,6 +29,7 @@ struct BakeCommand {
     SceneOptions scene;
     std::string output, report, depfile;
     bool verbose = false;
+    formats::Compression compression = formats::Compression::fast;
     bake::BakeExtras extras;
     ProgressStyle progress = ProgressStyle::automatic;
 };
@@ -137,16 +138,11 @@ formats::Status commit_all(std::vector<formats::AtomicFile>& files) {
     return formats::ok_status();
 }
 
-// Predicted seconds of the stages, before a pilot changed any knob, and the plan's entries for the
-// knobs used.
+// Predicted seconds of the stages, before a pilot changed any knob.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
                    const MachineRates& machine, const bake::BakeExtras& extras,
-                   bake::BakeResult& result) {
+                   const bake::BakeResult& result) {
     const bake::EffectTable& effects = bake::all_effects();
-    const bake::CostRequest used{effects,       scene,          result.facts,          result.knobs,
-                                 machine.rates, result.threads, extras.receiver_errors};
-    bake::predict_costs(used, result.plan, result.volume_plan);
-    bake::predict_savings(used, result.plan);
     std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
     std::vector<bake::PlanEntry> others = result.volume_plan;
     bake::Knobs budget = wanted;
@@ -167,7 +163,7 @@ int run(const BakeCommand& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    auto imported = open_scene(options.scene, *knobs);
+    auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::fields);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -175,6 +171,11 @@ int run(const BakeCommand& options) {
         return report_error(status.error());
     }
     const std::vector<OutputFile> outputs = name_outputs(options);
+    if (is_scene_ending(ending_of(options.output))) {
+        return report_error(formats::make_error(
+            formats::ErrorKind::usage, options.output, "--output",
+            "programs would take it for a scene by its ending", "end the name in .opal"));
+    }
     if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
         return report_error(status.error());
     }
@@ -187,14 +188,11 @@ int run(const BakeCommand& options) {
         }
         files.push_back(std::move(*file));
     }
-    // Only the report has predictions; without a report the machine need not be measured.
-    const std::optional<MachineRates> machine =
-        options.report.empty() ? std::nullopt : std::optional(find_machine_rates());
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
-    context.on_progress = make_progress_printer(options.progress);
+    context.on_progress = make_progress_printer(options.progress, "bake");
     auto result =
         bake::run_bake(bake::all_effects(), imported->scene, *knobs, context, options.extras);
     if (!result) {
@@ -212,16 +210,27 @@ int run(const BakeCommand& options) {
         return report_error(status.error());
     }
     formats::AtomicFile& file = files.back();
-    if (auto status =
-            formats::write_opal_bytes(result->asset.view(), file, result->receiver_errors);
+    if (auto status = formats::write_opal_bytes(result->asset.view(), file, result->receiver_errors,
+                                                options.compression);
         !status) {
         return report_error(status.error());
     }
     const std::uint64_t bytes = file.bytes_written();
     std::size_t next = 0;
-    if (machine) {
+    const MachineRates machine = find_machine_rates();
+    const bake::CostRequest request{bake::all_effects(),
+                                    imported->scene,
+                                    result->facts,
+                                    result->knobs,
+                                    machine.rates,
+                                    result->threads,
+                                    options.extras.receiver_errors};
+    const bake::CostPrediction used =
+        bake::predict_costs(request, result->plan, result->volume_plan);
+    if (!options.report.empty()) {
+        bake::predict_savings(request, result->plan);
         const Expectation expected =
-            expect(imported->scene, *knobs, *machine, options.extras, *result);
+            expect(imported->scene, *knobs, machine, options.extras, *result);
         if (auto status = files[next++].write(
                 make_report(imported->scene, *result, expected, warnings, bytes));
             !status) {
@@ -237,11 +246,26 @@ int run(const BakeCommand& options) {
     if (auto status = commit_all(files); !status) {
         return report_error(status.error());
     }
+    learn_machine_rates(machine.rates, used, result->stages);
+    if (context.on_progress) context.on_progress({"bake", 1, 1});
     if (options.verbose) {
         print_stages(*result);
     }
     print_summary(options, *result, bytes, warnings.size());
     return kExitSuccess;
+}
+
+// What a first bake needs, then the rest.
+void group_bake_options(CLI::App& command) {
+    group_options(command,
+                  {{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
+                   {"What is simulated",
+                    {"--effects", "--separate-terms", "--multiple-model", "--volume-method"}},
+                   {"Machine", {"--threads", "--memory-limit"}},
+                   {"What is reported",
+                    {"--report", "--depfile", "--progress", "--verbose", "--check-model",
+                     "--receiver-errors"}}},
+                  "Knobs, which --quality and --error set");
 }
 
 }  // namespace
@@ -258,7 +282,8 @@ void add_bake_command(CLI::App& app, Job& job) {
         "every bake, and more closely with this");
     command->add_option("-o,--output", options->output, "the .opal file to write")
         ->required()
-        ->check(file_name());
+        ->check(file_name())
+        ->option_text("OUT.opal REQUIRED");
     command->add_option("--report", options->report, "write a JSON report: plan, stages, error")
         ->check(file_name());
     command
@@ -270,9 +295,19 @@ void add_bake_command(CLI::App& app, Job& job) {
         "also store how far the rows of each vertex are from those before coefficients were "
         "dropped and rounded (4 bytes a vertex): a map of it is shown by `view` and `render "
         "--receiver-errors`");
+    command
+        ->add_option("--compression", options->compression,
+                     "of the file: fast or best (slow to write) take a third to a half of the "
+                     "bytes, which a program decodes as it loads them; rows of none are used in "
+                     "place. Predicted sizes are those of none")
+        ->transform(one_of<formats::Compression>({{"none", formats::Compression::none},
+                                                  {"fast", formats::Compression::fast},
+                                                  {"best", formats::Compression::best}}))
+        ->option_text("none|fast|best [fast]");
     command->add_flag("--verbose", options->verbose,
                       "also print what is simulated and why, and what each stage took");
     add_progress_option(*command, options->progress);
+    group_bake_options(*command);
     command->footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }

@@ -26,5 +26,6 @@ void add_phase_command(CLI::App& app, Job& job);
 void add_slab_command(CLI::App& app, Job& job);
 void add_sweep_command(CLI::App& app, Job& job);
 void add_example_command(CLI::App& app, Job& job);
+void add_help_command(CLI::App& app, Job& job);  // of those added before and after
 
 }  // namespace opaline::cli

@@ -10,7 +10,9 @@
 #include "bake/cli/exit_codes.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/outputs.h"
 #include "bake/cli/write_picture.h"
+#include "runtime/picture/auto_exposure.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"
@@ -26,11 +28,33 @@ double elapsed_since(FrameClock::time_point start) {
     return std::chrono::duration<double>(FrameClock::now() - start).count();
 }
 
-// Draws and writes with `draw(camera)`.
-template <class Draw>
+// Of all frames; `meter(camera)` draws the picture that it is chosen from.
+template <class Meter>
+formats::Status choose_exposure(const FrameOptions& options, const runtime::Camera& camera,
+                                Drawing& drawing, Meter&& meter) {
+    if (options.exposure || ending_of(options.output) == ".exr") {
+        drawing.exposure = options.exposure.value_or(0.0f);
+        return formats::ok_status();
+    }
+    const formats::Result<runtime::Picture> metered = meter(runtime::meter_camera(camera));
+    if (!metered) return metered.error();
+    drawing.exposure = runtime::choose_exposure(*metered);
+    if (*drawing.exposure != 0) {
+        print_note(fmt::format("exposure {:+.2f} EV; --exposure sets it", *drawing.exposure));
+    }
+    return formats::ok_status();
+}
+
+// Draws and writes with `draw(camera)`, exposed as `meter(camera)` asks for.
+template <class Draw, class Meter>
 int write_frames(const FrameOptions& options, const runtime::Camera& camera, std::uint32_t end,
-                 Drawing& drawing, Draw&& draw) {
+                 Drawing& drawing, Draw&& draw, Meter&& meter) {
     const std::atomic<bool>& interrupted = catch_interrupts();
+    if (!drawing.exposure) {
+        if (auto status = choose_exposure(options, camera, drawing, meter); !status) {
+            return report_error(status.error());
+        }
+    }
     for (; drawing.frames < end; ++drawing.frames) {
         if (interrupted.load()) {
             return report_error(make_error(ErrorKind::interrupted, "", "", "interrupted",
@@ -44,9 +68,12 @@ int write_frames(const FrameOptions& options, const runtime::Camera& camera, std
             return report_error(picture.error());
         }
         if (auto status = write_picture(frame_path(options, drawing.frames), *picture,
-                                        options.exposure, options.tone_map);
+                                        *drawing.exposure, options.tone_map);
             !status) {
             return report_error(status.error());
+        }
+        if (options.on_progress && options.frames > 1) {
+            options.on_progress({"frames", drawing.frames + 1, options.frames});
         }
     }
     return kExitSuccess;
@@ -84,15 +111,22 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
         return primitive.shading != formats::Shading::diffuse;
     });
-    return write_frames(options, camera, end, drawing, [&](const runtime::Camera& at) {
+    const auto draw = [&](const runtime::Camera& at, const runtime::SoftwareOptions& how) {
         if (depends_on_eye && shaded_for != at.eye) {
             shaded_for = at.eye;
             radiance = runtime::shade_for_picture(view, lights, shaded_for, shown.terms,
                                                   options.threads, shown.emitters);
         }
         return runtime::render_software(view, radiance, light.sky.environment, light.sky.rotation,
-                                        at, software);
-    });
+                                        at, how);
+    };
+    runtime::SoftwareOptions metering = software;
+    metering.supersampling = 1;
+    metering.background = shown.background && !view.clouds.empty();
+    return write_frames(
+        options, camera, end, drawing,
+        [&](const runtime::Camera& at) { return draw(at, software); },
+        [&](const runtime::Camera& at) { return draw(at, metering); });
 }
 
 #ifdef OPALINE_HAS_GL
@@ -152,8 +186,13 @@ int draw_on_gpu([[maybe_unused]] const FrameOptions& options,
     runtime::GlRenderOptions gl;
     gl.terms = shown.terms;
     gl.background = shown.background;
-    return write_frames(options, camera, end, drawing,
-                        [&](const runtime::Camera& at) { return renderer.render(at, gl); });
+    runtime::GlRenderOptions metering = gl;
+    metering.supersampling = 1;
+    metering.background = shown.background && !view.clouds.empty();
+    return write_frames(
+        options, camera, end, drawing,
+        [&](const runtime::Camera& at) { return renderer.render(at, gl); },
+        [&](const runtime::Camera& at) { return renderer.render(at, metering); });
 #else
     if (options.backend == Backend::automatic) {
         return draw_on_cpu(options, view, light, camera, shown, end, drawing);

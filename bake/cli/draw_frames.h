@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
 
+#include "bake/base/context.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/light_with_layers.h"
 #include "formats/opal/asset.h"
@@ -25,12 +27,14 @@ enum class Backend { automatic, gl, cpu };
 struct FrameOptions {
     std::string output;
     Backend backend = Backend::automatic;
-    float exposure = 0;  ///< [EV]
+    /// [EV]; nothing: chosen from the first frame (auto_exposure.h), 0 of radiance (.exr).
+    std::optional<float> exposure;
     runtime::ToneMap tone_map = runtime::ToneMap::neutral;
     std::uint32_t frames = 1;  ///< 1 or more
     double turn = 360;         ///< that the camera goes around the target in all frames [degrees]
     unsigned threads = 0;
     bool stats = false;
+    std::function<void(const bake::Progress&)> on_progress;  ///< of several frames; may be empty
 };
 
 /// Where a frame is written: OUT.png, or OUT-0001.png and so on of several. `frame` from 0.
@@ -58,9 +62,10 @@ struct PictureLight {
 
 /// What stays from one light to the next.
 struct Drawing {
-    std::uint32_t frames = 0;  ///< drawn and written so far
-    double seconds = 0;        ///< of drawing them
-    bool lacks_gl = false;     ///< OpenGL was tried, and cannot be used
+    std::uint32_t frames = 0;       ///< drawn and written so far
+    std::optional<float> exposure;  ///< of all frames [EV], from the first one on
+    double seconds = 0;             ///< of drawing them
+    bool lacks_gl = false;          ///< OpenGL was tried, and cannot be used
 #ifdef OPALINE_HAS_GL
     std::optional<runtime::GlRenderer> renderer;
 #endif

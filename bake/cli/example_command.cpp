@@ -6,6 +6,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/usage_errors.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/environment/rasterise.h"
 #include "bake/example/example_scenes.h"
@@ -56,24 +57,43 @@ formats::Result<std::filesystem::path> write_light(const std::string& spec,
     return path;
 }
 
+// The scene of that name, else the one that it may be a slip of; empty: none.
+std::string nearest_example(const std::string& name) {
+    std::vector<std::string> names;
+    for (const bake::ExampleInfo& example : bake::list_examples()) {
+        names.emplace_back(example.name);
+    }
+    for (const char* light : {"white", "black", "studio"})
+        names.emplace_back(light);
+    return find_nearest(name, names);
+}
+
 int run(const ExampleCommand& options) {
     if (options.list) {
         return list_all();
     }
-    if (options.name.empty() || options.folder.empty()) {
-        return report_error(formats::make_error(
-            formats::ErrorKind::usage, "", "example", "a name and a folder are needed",
-            "opaline example NAME -o DIR, or opaline example --list"));
+    if (options.name.empty()) {
+        return report_error(formats::make_error(formats::ErrorKind::usage, "", "example",
+                                                "a name is needed", "opaline example --list"));
     }
     if (bake::is_builtin(options.name)) {
-        const auto path = write_light(options.name, options.folder);
+        const auto path = write_light(options.name, options.folder.empty() ? "." : options.folder);
         if (!path) {
             return report_error(path.error());
         }
         fmt::print("{}\n", path->string());
         return kExitSuccess;
     }
-    const auto files = bake::write_example(options.name, options.folder);
+    const std::string nearest = nearest_example(options.name);
+    if (nearest != options.name) {
+        return report_error(
+            formats::make_error(formats::ErrorKind::usage, "", "",
+                                "there is no example '" + shorten(options.name) + "'",
+                                (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") +
+                                    std::string("opaline example --list names them")));
+    }
+    const auto files =
+        bake::write_example(options.name, options.folder.empty() ? options.name : options.folder);
     if (!files) {
         return report_error(files.error());
     }
@@ -91,11 +111,13 @@ void add_example_command(CLI::App& app, Job& job) {
         "example", "Write a bundled example scene or light; nothing is downloaded");
     command->add_option("name", options->name, "a scene or a light of the list")
         ->option_text("NAME");
-    command->add_option("-o,--output", options->folder, "folder to write to, created if absent")
+    command
+        ->add_option("-o,--output", options->folder,
+                     "folder to write to, created if absent; default: one named after the scene, "
+                     "the current one for a light")
         ->option_text("DIR");
     command->add_flag("--list", options->list, "say what there is");
-    command->footer(
-        "Example:\n  opaline example statue -o scenes\n  opaline example studio -o lights");
+    command->footer("Example:\n  opaline example statue\n  opaline example studio -o lights");
     command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 

@@ -56,6 +56,9 @@ int run(const ExportWebCommand& options) {
     if (auto status = check_folder(options.folder, runtime::is_page_file); !status) {
         return report_error(status.error());
     }
+    for (const std::string& light : options.lights) {
+        if (auto status = check_light(light); !status) return report_error(status.error());
+    }
     const auto asset = open_asset(options.path);
     if (!asset) return report_error(asset.error());
     const formats::AssetView& view = asset->loaded.view;

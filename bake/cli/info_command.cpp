@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/cli/command.h"
+#include "bake/cli/emitter_brightness.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/layer_info.h"
@@ -42,21 +43,33 @@ const char* alpha_mode_of(const formats::AssetView& view, std::size_t primitive)
 }
 
 // What each adds to rows, and how many primitives glow.
-Json emitters_json(const formats::EmittersView& emitters) {
+Json emitters_json(const formats::AssetView& view) {
+    const formats::EmittersView& emitters = view.emitters;
+    const std::vector<double> times = compare_with_sky(view);
     Json list = Json::array();
     for (std::uint32_t e = 0; e < emitters.size(); ++e) {
         const auto lit = std::ranges::count(emitters.block, e, &formats::EmitterBlock::emitter);
         const auto glowing = std::ranges::count(emitters.own, e, &formats::OwnLight::emitter);
-        list.push_back({{"name", std::string(emitters.name(e))},
-                        {"lit_primitives", lit},
-                        {"glowing_primitives", glowing}});
+        list.push_back(
+            {{"name", std::string(emitters.name(e))},
+             {"lit_primitives", lit},
+             {"glowing_primitives", glowing},
+             {"times_white_sky", std::isfinite(times[e]) ? Json(times[e]) : Json(nullptr)}});
     }
     return list;
 }
 
-void print_emitters(const formats::EmittersView& emitters) {
+void print_emitters(const Json& emitters) {
     if (!emitters.empty()) {
-        fmt::print("emitters      {}\n", printable(list_emitters(emitters)));
+        fmt::print("emitters\n");
+    }
+    for (const Json& emitter : emitters) {
+        const Json& times = emitter["times_white_sky"];
+        fmt::print("  '{}'{}\n", printable(emitter["name"].get<std::string>()),
+                   times.is_number()
+                       ? fmt::format(": {:.3g} times the light of a sky of radiance 1",
+                                     times.get<double>())
+                       : "");
     }
 }
 
@@ -128,7 +141,7 @@ Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) 
                                    {"bytes_per_active_voxel", facts.bytes_per_active_voxel()}});
     }
     info["layers"] = layers_json(view.clouds);
-    info["emitters"] = emitters_json(view.emitters);
+    info["emitters"] = emitters_json(view);
     info["sections"] = Json::array();
     for (const formats::SectionEntry& section : asset.loaded.sections) {
         info["sections"].push_back({{"id", formats::section_name(section.id)},
@@ -311,7 +324,7 @@ int run(const InfoCommand& options) {
     print_provenance(info["provenance"]);
     print_volumes(view.volumes);
     print_layers(view.clouds);
-    print_emitters(view.emitters);
+    print_emitters(info["emitters"]);
     if (!view.primitives.empty()) {
         fmt::print("primitives\n");
     }

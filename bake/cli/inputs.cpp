@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "bake/cli/messages.h"
+#include "bake/cli/outputs.h"
+#include "bake/cli/usage_errors.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/scene/flatten_slabs.h"
 #include "formats/media/apply_media.h"
@@ -35,8 +37,9 @@ formats::Status fill_materials(const formats::MediaFile& media, formats::Importe
     return formats::ok_status();
 }
 
-formats::Status add_clouds(const formats::MediaFile& media, formats::ImportedScene& imported) {
-    const auto warnings = formats::load_clouds(media, imported.scene);
+formats::Status add_clouds(const formats::MediaFile& media, formats::CloudDetail detail,
+                           formats::ImportedScene& imported) {
+    const auto warnings = formats::load_clouds(media, imported.scene, detail);
     if (!warnings) {
         return warnings.error();
     }
@@ -45,7 +48,7 @@ formats::Status add_clouds(const formats::MediaFile& media, formats::ImportedSce
 }
 
 formats::Status add_media(const formats::MediaFile& media, double metres_per_unit,
-                          formats::ImportedScene& imported) {
+                          formats::CloudDetail detail, formats::ImportedScene& imported) {
     if (auto status = fill_materials(media, imported); !status) {
         return status;
     }
@@ -54,25 +57,27 @@ formats::Status add_media(const formats::MediaFile& media, double metres_per_uni
         return warnings.error();
     }
     join(*warnings, imported);
-    return add_clouds(media, imported);
+    return add_clouds(media, detail, imported);
 }
 
 // A volume alone, with what the media file says of it.
 formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& path,
-                                                 double metres_per_unit,
-                                                 const std::filesystem::path& media) {
+                                                 const formats::ImportOptions& options,
+                                                 const std::filesystem::path& media,
+                                                 formats::CloudDetail detail) {
     formats::MediaFile none;
     none.file = path.string();
-    auto file = media.empty() ? std::move(none) : formats::read_media(media);
+    auto file =
+        media.empty() ? std::move(none) : formats::read_media(media, options.allowed_folders);
     if (!file) {
         return std::move(file).error();
     }
-    auto imported = formats::import_vdb(path, *file, metres_per_unit);
+    auto imported = formats::import_vdb(path, *file, options.metres_per_unit);
     if (imported) {
         if (auto status = fill_materials(*file, *imported); !status) {
             return std::move(status).error();
         }
-        if (auto status = add_clouds(*file, *imported); !status) {
+        if (auto status = add_clouds(*file, detail, *imported); !status) {
             return std::move(status).error();
         }
     }
@@ -81,8 +86,9 @@ formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& pa
 
 // The volumes and the cloud layer of a media file, without any surface.
 formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::path& path,
-                                                         double metres_per_unit) {
-    const auto file = formats::read_media(path);
+                                                         const formats::ImportOptions& options,
+                                                         formats::CloudDetail detail) {
+    const auto file = formats::read_media(path, options.allowed_folders);
     if (!file) {
         return file.error();
     }
@@ -93,7 +99,7 @@ formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::
     formats::ImportedScene imported;
     imported.scene.source = path.string();
     imported.scene.materials.resize(1);
-    if (auto status = add_media(*file, metres_per_unit, imported); !status) {
+    if (auto status = add_media(*file, options.metres_per_unit, detail, imported); !status) {
         return std::move(status).error();
     }
     return imported;
@@ -101,30 +107,33 @@ formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::
 
 formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& path,
                                                   const formats::ImportOptions& options,
-                                                  const std::filesystem::path& media) {
+                                                  const std::filesystem::path& media,
+                                                  formats::CloudDetail detail) {
     auto imported = formats::import_gltf(path, options);
     if (!imported) {
         return imported;
     }
     // The file on the command line comes last and overrides the scene's media.
     if (!imported->media.empty()) {
-        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media");
+        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media",
+                                              options.allowed_folders);
         if (!own) {
             return own.error();
         }
-        if (auto status = add_media(*own, options.metres_per_unit, *imported); !status) {
+        if (auto status = add_media(*own, options.metres_per_unit, detail, *imported); !status) {
             return std::move(status).error();
         }
     }
     if (!media.empty()) {
-        const auto file = formats::read_media(media);
+        const auto file = formats::read_media(media, options.allowed_folders);
         if (!file) {
             return file.error();
         }
-        if (auto status = add_media(*file, options.metres_per_unit, *imported); !status) {
+        if (auto status = add_media(*file, options.metres_per_unit, detail, *imported); !status) {
             return std::move(status).error();
         }
     }
+    join(formats::warn_of_unstated_metals(imported->scene), *imported);
     return imported;
 }
 
@@ -136,6 +145,12 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
         return std::move(file).error();
     }
     auto loaded = formats::read_opal(file->bytes(), path.string(), checks);
+    if (!loaded && is_scene_ending(ending_of(path))) {
+        const std::string name = path.filename().string();
+        return make_error(
+            ErrorKind::bad_input, path.string(), "", "is a scene, not an .opal file",
+            "bake it first: opaline bake " + name + " -o " + path.stem().string() + ".opal");
+    }
     if (!loaded) {
         return std::move(loaded).error();
     }
@@ -144,15 +159,21 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
 
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    const formats::ImportOptions& options,
-                                                   const std::filesystem::path& media) {
-    const std::filesystem::path ending = path.extension();
+                                                   const std::filesystem::path& media,
+                                                   formats::CloudDetail detail) {
+    const std::string ending = ending_of(path);
+    if (ending == ".opal") {
+        return make_error(ErrorKind::bad_input, path.string(), "", "is baked already",
+                          "did you mean `opaline render " + path.filename().string() +
+                              "`? A bake reads a scene: .gltf, .glb, .vdb or .json");
+    }
     if (ending == ".json" && !media.empty()) {
         return make_error(ErrorKind::usage, media.string(), "--media",
                           "the scene is a media file itself", "join both in one file");
     }
-    auto imported = ending == ".vdb"    ? open_vdb(path, options.metres_per_unit, media)
-                    : ending == ".json" ? open_media_scene(path, options.metres_per_unit)
-                                        : open_gltf(path, options, media);
+    auto imported = ending == ".vdb"    ? open_vdb(path, options, media, detail)
+                    : ending == ".json" ? open_media_scene(path, options, detail)
+                                        : open_gltf(path, options, media, detail);
     if (!imported) {
         return imported;
     }
@@ -161,10 +182,32 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
     if (auto status = report_warnings(imported->warnings); !status) {
         return std::move(status).error();
     }
+    for (const std::string& note : imported->notes) {
+        print_note("opaline: " + printable(path.string()) + ": " + note);
+    }
     return imported;
 }
 
+formats::Status check_light(const std::string& spec) {
+    std::error_code ignored;
+    if (!bake::is_builtin(spec) && std::filesystem::exists(spec, ignored)) {
+        return formats::ok_status();
+    }
+    const auto made = bake::open_environment(spec);  // by its name, or an error
+    if (made) return formats::ok_status();
+    formats::Error error = made.error();
+    const std::string nearest = find_nearest(spec, {"white", "black", "studio"});
+    if (!nearest.empty() && nearest != spec) {
+        std::string& remedy = error.diagnostics.front().remedy;
+        remedy = "did you mean '" + nearest + "'? Else " + remedy;
+    }
+    return error;
+}
+
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees) {
+    if (auto status = check_light(spec); !status) {
+        return status.error();
+    }
     auto opened = bake::open_environment(spec);
     if (!opened) {
         return std::move(opened).error();
@@ -175,6 +218,10 @@ formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_d
     return OpenedLight{
         std::move(opened->environment),
         runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};
+}
+
+bool is_scene_ending(std::string_view ending) {
+    return ending == ".gltf" || ending == ".glb" || ending == ".vdb" || ending == ".json";
 }
 
 std::string light_help() {

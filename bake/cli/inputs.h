@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "formats/gltf/import_gltf.h"
+#include "formats/media/load_clouds.h"
 #include "formats/opal/environment.h"
 #include "formats/opal/file_bytes.h"
 #include "formats/opal/read_opal.h"
@@ -24,18 +26,26 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
 /// Reads a scene, fills its materials with the media of its extension OPALINE_media, then of a
 /// media file (none if the path is empty), loads their volumes and cloud layers, flattens
 /// sheets of a medium, and reports the warnings (messages.h). A `.vdb` file is a scene of one
-/// volume, and a media file (`.json`) one of its volumes and its cloud layer.
+/// volume, and a media file (`.json`) one of its volumes and its cloud layer. `detail`: of layers.
 formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
                                                    const formats::ImportOptions& options,
-                                                   const std::filesystem::path& media);
+                                                   const std::filesystem::path& media,
+                                                   formats::CloudDetail detail);
 
 /// A light as `--light` names it, turned by `--rotate-light` degrees about +Y.
 struct OpenedLight {
     formats::Environment environment;
     runtime::Rotation rotation;
 };
+/// Refuses a name that is neither a built-in nor a file, with the nearest one: before a large file
+/// is read. Errors: as open_light.
+formats::Status check_light(const std::string& spec);
 /// Reports warnings about repaired pixels.
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees);
+
+/// Whether a file with this ending, in lower case, is read as a scene: ".gltf", ".glb", ".vdb",
+/// ".json".
+bool is_scene_ending(std::string_view ending);
 
 /// Help text of `--light`.
 std::string light_help();

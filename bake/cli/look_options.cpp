@@ -13,10 +13,12 @@ void add_rotate_light_option(CLI::App& command, double& degrees) {
         ->option_text("DEG [0]");
 }
 
-void add_exposure_option(CLI::App& command, float& exposure) {
-    command.add_option("--exposure", exposure, "brighter by a factor of 2^EV")
+void add_exposure_option(CLI::App& command, std::optional<float>& exposure, const char* otherwise) {
+    command
+        .add_option("--exposure", exposure,
+                    std::string("brighter by a factor of 2^EV; default: ") + otherwise)
         ->check(real_number(-64, 64))
-        ->option_text("EV [0]");
+        ->option_text("EV");
 }
 
 void add_look_options(CLI::App& command, const LookOptions& options) {
@@ -30,10 +32,14 @@ void add_look_options(CLI::App& command, const LookOptions& options) {
                         " apart need a bake with --separate-terms")
         ->check(term_list())
         ->option_text("all|LIST [all]");
-    add_exposure_option(command, options.exposure);
+    add_exposure_option(command, options.exposure,
+                        "0, but lower where what is shown is too bright for a screen, and higher "
+                        "where it is nearly black; 0 of .exr");
     command
         .add_option("--tone-map", options.tone_map,
-                    "of screens and .png. neutral: Khronos PBR Neutral; none: cut off at 1")
+                    "of screens and .png. neutral: as Khronos PBR Neutral up to its shoulder, "
+                    "above it each "
+                    "band by itself; none: cut off at 1")
         ->transform(one_of<runtime::ToneMap>(
             {{"neutral", runtime::ToneMap::neutral}, {"none", runtime::ToneMap::none}}))
         ->option_text("neutral|none [neutral]");

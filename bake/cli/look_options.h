@@ -13,14 +13,14 @@ namespace opaline::cli {
 struct LookOptions {
     double& rotate_light;  ///< [degrees]
     std::string& terms;
-    float& exposure;  ///< [EV]
+    std::optional<float>& exposure;  ///< [EV]; nothing: chosen from the picture
     runtime::ToneMap& tone_map;
     std::optional<std::uint32_t>& coefficients;  ///< of a row
 };
 
-/// Those that other commands have as well.
+/// Those that other commands have as well; `otherwise`: what is without the option.
 void add_rotate_light_option(CLI::App& command, double& degrees);
-void add_exposure_option(CLI::App& command, float& exposure);
+void add_exposure_option(CLI::App& command, std::optional<float>& exposure, const char* otherwise);
 
 void add_look_options(CLI::App& command, const LookOptions& options);
 

@@ -2,19 +2,25 @@
 
 #include <string>
 
-#include "bake/plan/rates.h"
+#include "bake/base/stage_log.h"
+#include "bake/pipeline/cost_model.h"
+#include "bake/plan/stage_rates.h"
 
 namespace opaline::cli {
 
 /// The rates of this machine, and their source.
 struct MachineRates {
-    bake::Rates rates;
+    bake::StageRates rates;
     std::string note;  ///< for the report
 };
 
-/// Reads the rates from the user's cache (rates_cache.h). If it has none for this machine, measures
-/// them, reports that on stderr and stores them. A failure to store is no error: the next command
-/// measures again.
+/// Reads what earlier bakes taught (rates_cache.h); a cache that is not there or damaged teaches
+/// nothing.
 MachineRates find_machine_rates();
+
+/// Adds what a bake took to `rates`, as they were found, and keeps them in the user's cache.
+/// `predicted`: for the knobs that it used. A cache that cannot be written stays as it is.
+void learn_machine_rates(bake::StageRates rates, const bake::CostPrediction& predicted,
+                         const bake::StageLog& ran);
 
 }  // namespace opaline::cli

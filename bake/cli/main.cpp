@@ -1,7 +1,9 @@
 #include <fmt/core.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -41,7 +43,7 @@ int run_program(int argc, char** argv) {
         "Opaline bakes how light travels through a scene, so that it can be relit in real time.");
     app.name("opaline");
     app.require_subcommand(1);
-    app.set_version_flag("--version", describe_version);
+    app.set_version_flag("-v,--version", describe_version);
     MessageOptions messages;
     app.fallthrough();  // the program's options stand before or after the command
     app.add_flag("--strict", messages.strict,
@@ -49,32 +51,34 @@ int run_program(int argc, char** argv) {
     app.add_flag("--quiet", messages.quiet, "print errors only: no warnings, summary or progress");
     app.get_formatter()->column_width(38);
     Job job;
+    // In the order in which they are met.
+    add_example_command(app, job);
     add_bake_command(app, job);
-    add_plan_command(app, job);
-    add_info_command(app, job);
-    add_verify_command(app, job);
-    add_relight_command(app, job);
     add_render_command(app, job);
 #ifdef OPALINE_HAS_GL
     add_view_command(app, job);
 #endif
     add_export_web_command(app, job);
+    add_help_command(app, job);
+    add_plan_command(app, job);
+    add_info_command(app, job);
+    add_verify_command(app, job);
+    add_relight_command(app, job);
     add_reference_command(app, job);
     add_compare_command(app, job);
     add_mie_command(app, job);
     add_phase_command(app, job);
     add_slab_command(app, job);
     add_sweep_command(app, job);
-    add_example_command(app, job);
     app.footer(
         "Exit codes: 0 success; 1 the job ran and the answer is no; 2 bad usage; 3 bad input "
         "file;\n"
         "4 resource or I/O failure; 130 interrupted.\n"
         "Example:\n"
-        "  opaline example statue -o scenes\n"
-        "  opaline bake scenes/statue.gltf -o statue.opal\n"
-        "  opaline render statue.opal --light studio -o statue.png\n"
-        "`opaline COMMAND --help` explains a command.");
+        "  opaline example statue\n"
+        "  opaline bake statue/statue.gltf -o statue.opal\n"
+        "  opaline render statue.opal -o statue.png\n"
+        "`opaline help COMMAND` explains a command.");
     for (CLI::App* command : app.get_subcommands({})) {
         command->footer(command->get_footer() +
                         "\nEvery command also takes --strict and --quiet (see `opaline --help`).");
@@ -98,6 +102,30 @@ int run_program(int argc, char** argv) {
     return code;
 }
 
+int run_guarded(int argc, char** argv) {
+    try {
+        return run_program(argc, argv);
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
+    } catch (const std::system_error& error) {
+        fmt::print(stderr, "opaline: error: {}\n", printable(error.what()));
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
+                   printable(error.what()));
+    }
+    return kExitResource;
+}
+
+// Everything of ours is written and destroyed. Libraries' statics are left alone: OpenVDB brings a
+// logger that starts four threads when it is loaded, and these race with its destruction.
+int end_program(int code) {
+    std::fflush(stdout);
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they report at the end
+    std::_Exit(code);
+#endif
+    return code;
+}
+
 }  // namespace
 }  // namespace opaline::cli
 
@@ -105,15 +133,7 @@ int main(int argc, char** argv) {
     if (opaline::formats::is_vdb_request(argc, argv)) {
         opaline::formats::answer_vdb_request(argc, argv);
     }
-    try {
-        return opaline::cli::run_program(argc, argv);
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
-    } catch (const std::system_error& error) {
-        fmt::print(stderr, "opaline: error: {}\n", opaline::cli::printable(error.what()));
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
-                   opaline::cli::printable(error.what()));
-    }
-    return opaline::cli::kExitResource;
+    // A write past the limit of file sizes fails as one to a full disk does.
+    std::signal(SIGXFSZ, SIG_IGN);
+    return opaline::cli::end_program(opaline::cli::run_guarded(argc, argv));
 }

@@ -13,16 +13,16 @@ using formats::ErrorKind;
 
 namespace {
 
-MessageOptions chosen;
+MessageOptions message_settings;
 
 }  // namespace
 
 void set_message_options(const MessageOptions& options) {
-    chosen = options;
+    message_settings = options;
 }
 
 const MessageOptions& message_options() {
-    return chosen;
+    return message_settings;
 }
 
 std::string format_diagnostic(const Diagnostic& diagnostic) {
@@ -61,7 +61,7 @@ int report_error(const formats::Error& error) {
 }
 
 formats::Status report_warnings(const std::vector<Diagnostic>& warnings) {
-    if (chosen.strict && !warnings.empty()) {
+    if (message_settings.strict && !warnings.empty()) {
         formats::Error error{ErrorKind::bad_input, warnings};
         for (Diagnostic& diagnostic : error.diagnostics) {
             diagnostic.severity = Diagnostic::Severity::error;
@@ -75,7 +75,7 @@ formats::Status report_warnings(const std::vector<Diagnostic>& warnings) {
 }
 
 void print_note(const std::string& line) {
-    if (!chosen.quiet) {
+    if (!message_settings.quiet) {
         fmt::print(stderr, "{}\n", line);
     }
 }

@@ -112,6 +112,18 @@ CLI::Validator term_list() {
     });
 }
 
+void group_options(CLI::App& command, const std::vector<OptionGroup>& groups,
+                   const std::string& others) {
+    for (CLI::Option* option : command.get_options()) {
+        if (option->nonpositional() && option != command.get_help_ptr()) option->group(others);
+    }
+    for (const OptionGroup& group : groups) {
+        for (const std::string& name : group.names) {
+            command.get_option(name)->group(group.heading.empty() ? "Options" : group.heading);
+        }
+    }
+}
+
 namespace detail {
 
 CLI::Validator one_of(std::vector<std::pair<std::string, std::string>> names) {

@@ -35,6 +35,16 @@ CLI::Validator file_name();
 /// Components of radiance: not empty, as nothing would stand for all of them.
 CLI::Validator term_list();
 
+/// Options under one heading of a command's help.
+struct OptionGroup {
+    std::string heading;             ///< empty: the first, without a heading of its own
+    std::vector<std::string> names;  ///< "--name", of options that the command has
+};
+
+/// Puts options under headings in the order of the groups; those in none under `others`.
+void group_options(CLI::App& command, const std::vector<OptionGroup>& groups,
+                   const std::string& others);
+
 namespace detail {
 /// Of a name and the text that CLI11 converts into the option's value.
 CLI::Validator one_of(std::vector<std::pair<std::string, std::string>> names);

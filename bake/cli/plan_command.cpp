@@ -53,7 +53,7 @@ int run(const PlanCommand& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    const auto imported = open_scene(options.scene, *knobs);
+    const auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::largest);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -89,7 +89,7 @@ int run(const PlanCommand& options) {
     if (auto status = report_warnings(warnings); !status) {
         return report_error(status.error());
     }
-    const bake::Rates rates = find_machine_rates().rates;
+    const bake::StageRates rates = find_machine_rates().rates;
     bake::Knobs budget = *knobs;
     budget.model_error = bake::find_model_error(plan);
     const bake::CostRequest request{effects, scene, facts, budget, rates, threads};

@@ -15,6 +15,7 @@ namespace opaline::cli {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
 
 struct Bar {
     std::string stage;
@@ -49,11 +50,8 @@ void print_bar(const Bar& bar, const bake::Progress& progress) {
     std::fflush(stderr);
 }
 
-void print_json(const bake::Progress& progress) {
-    const nlohmann::ordered_json line{
-        {"stage", progress.stage}, {"done", progress.done}, {"total", progress.total}};
-    fmt::print(stderr, "{}\n",
-               line.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace));
+std::string write_line(const Json& line) {
+    return line.dump(-1, ' ', true, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -61,27 +59,65 @@ void print_json(const bake::Progress& progress) {
 void add_progress_option(CLI::App& command, ProgressStyle& style) {
     command
         .add_option("--progress", style,
-                    "auto: a bar on a terminal; json: a line of JSON a step on stderr; none")
+                    "auto: a bar on a terminal; json: JSON lines on stderr, with event, stage, "
+                    "done, total, seconds and eta_seconds, 22 a stage at most; none")
         ->transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
                                            {"json", ProgressStyle::json},
                                            {"none", ProgressStyle::none}}))
         ->option_text("auto|json|none [auto]");
 }
 
-std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle style) {
+std::string ProgressLines::next(const bake::Progress& progress, double seconds_now) {
+    constexpr double kStep = 0.05;
+    Stage& stage = stages_[std::string(progress.stage)];
+    const double share = progress.total > 0 ? static_cast<double>(progress.done) /
+                                                  static_cast<double>(progress.total)
+                                            : 1.0;
+    const bool begins = !stage.is_open, ends = progress.done >= progress.total;
+    if (begins && seconds_now < stage.next) return {};
+    if (begins) stage = {.begin = seconds_now, .is_open = true};
+    if (!begins && !ends && share < stage.last_share + kStep) return {};
+    stage.last_share = share;
+    stage.is_open = !ends;
+    if (ends) stage.next = seconds_now + 1;
+    const double seconds = seconds_now - stage.begin;
+    Json line{{"stage", progress.stage}, {"event", ends ? "end" : begins ? "begin" : "step"},
+              {"done", progress.done},   {"total", progress.total},
+              {"seconds", seconds},      {"eta_seconds", nullptr}};
+    if (ends) {
+        line["eta_seconds"] = 0;
+    } else if (seconds > 0 && share > 0) {
+        line["eta_seconds"] = seconds * (1 - share) / share;
+    }
+    std::string text;
+    // A stage that is told of once has begun as well.
+    if (begins && ends) {
+        Json first = line;
+        first["event"] = "begin";
+        first["done"] = 0;
+        first["eta_seconds"] = nullptr;
+        text = write_line(first);
+    }
+    return text + write_line(line);
+}
+
+std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle style,
+                                                                 const std::string& job) {
     if (style == ProgressStyle::none ||
         (style == ProgressStyle::automatic && (message_options().quiet || isatty(2) == 0))) {
         return {};
     }
-    return [style, bar = std::make_shared<Bar>()](const bake::Progress& progress) {
-        if (!is_due(*bar, progress)) {
-            return;
-        }
-        if (style == ProgressStyle::json) {
-            print_json(progress);
-        } else {
-            print_bar(*bar, progress);
-        }
+    if (style == ProgressStyle::json) {
+        const auto print = [lines = std::make_shared<ProgressLines>(),
+                            start = Clock::now()](const bake::Progress& progress) {
+            const std::chrono::duration<double> now = Clock::now() - start;
+            fmt::print(stderr, "{}", lines->next(progress, now.count()));
+        };
+        print({job, 0, 1});
+        return print;
+    }
+    return [job, bar = std::make_shared<Bar>()](const bake::Progress& progress) {
+        if (progress.stage != job && is_due(*bar, progress)) print_bar(*bar, progress);
     };
 }
 

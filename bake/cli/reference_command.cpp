@@ -133,8 +133,9 @@ Status make_picture(const ReferenceOptions& options, const bake::PathSpace& spac
         return camera.error();
     }
     if (options.paths.is_chosen()) {
-        return make_path_picture({options.output, options.exposure, options.samples, *camera},
-                                 space, options.paths, context);
+        return make_path_picture(
+            {options.output, options.exposure.value_or(0.0f), options.samples, *camera}, space,
+            options.paths, context);
     }
     const auto image = bake::estimate_image(space, *camera, wanted, context);
     if (!image) {
@@ -147,7 +148,8 @@ Status make_picture(const ReferenceOptions& options, const bake::PathSpace& spac
         return status;
     }
     const runtime::Picture picture{image->mean.width, image->mean.height, image->mean.pixel};
-    if (auto status = write_picture(options.output, picture, options.exposure); !status) {
+    if (auto status = write_picture(options.output, picture, options.exposure.value_or(0.0f));
+        !status) {
         return status;
     }
     print_summary(options, image->estimate);
@@ -177,6 +179,9 @@ int run(const ReferenceOptions& options) {
         return report_error(terms.error());
     }
     paths.terms = *terms;
+    if (auto status = check_light(options.light); !status) {
+        return report_error(status.error());
+    }
     const MonteCarloOption monte_carlo[] = {{"--receivers", options.receivers > 0},
                                             {"--seconds", options.seconds > 0},
                                             {"--max-depth", options.max_depth > 0},
@@ -188,7 +193,13 @@ int run(const ReferenceOptions& options) {
     if (auto status = check_reference_paths(options, {}); !status) {
         return report_error(status.error());
     }
-    const auto imported = open_scene(options.scene, {options.metres_per_unit, {}}, options.media);
+    const auto imported =
+        open_scene(options.scene,
+                   {options.metres_per_unit,
+                    {options.allowed_folders.begin(), options.allowed_folders.end()},
+                    {},
+                    options.smooth_normals},
+                   options.media, formats::CloudDetail::fields);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -235,13 +246,15 @@ int run(const ReferenceOptions& options) {
     bake::Context context;
     context.threads = options.threads;
     context.cancel = &interrupted;
-    context.on_progress = make_progress_printer(options.progress);
+    context.on_progress = make_progress_printer(options.progress, "reference");
     const bake::EstimateOptions wanted = estimate_options(options);
     const auto filtering = make_filtering(options, scene->surfaces, wanted.samples);
     const bake::PathSpace space{*scene, sampler, paths, filtering.get()};
     const Status status =
         (options.receivers > 0 ? make_table : make_picture)(options, space, wanted, context);
-    return status ? kExitSuccess : report_error(status.error());
+    if (!status) return report_error(status.error());
+    if (context.on_progress) context.on_progress({"reference", 1, 1});
+    return kExitSuccess;
 }
 
 }  // namespace

@@ -131,11 +131,13 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options) {
                     "what translucent materials are made of; volumes of smoke or cloud")
         ->check(file_name())
         ->option_text("FILE.json");
+    add_allow_path_option(command, options.allowed_folders);
     command
         .add_option("--metres-per-unit", options.metres_per_unit,
                     "length of one unit of the scene file")
         ->check(real_number(kLeastUnit, kMostUnit))
         ->option_text("X [1]");
+    add_smooth_normals_option(command, options.smooth_normals);
     add_path_integration_options(command, options.paths);
     add_estimate_options(command, options);
     add_camera_options(command, options.camera);
@@ -143,7 +145,7 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options) {
          {"--size", "--azimuth", "--elevation", "--distance", "--target", "--up", "--fov"}) {
         options.picture_options.push_back(command.get_option(name));
     }
-    add_exposure_option(command, options.exposure);
+    add_exposure_option(command, options.exposure, "0");
     add_rotate_light_option(command, options.rotate_light);
     add_progress_option(command, options.progress);
 }

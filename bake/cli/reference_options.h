@@ -16,12 +16,13 @@ namespace opaline::cli {
 /// Of `opaline reference`, as its help says; 0: not given.
 struct ReferenceOptions {
     std::string scene, media, light, output, terms, texture_filter = "none";
+    std::vector<std::string> allowed_folders;
     CameraOptions camera;
     PathIntegrationOptions paths;
-    double metres_per_unit = 1, rotate_light = 0, seconds = 0;
+    double metres_per_unit = 1, smooth_normals = 0, rotate_light = 0, seconds = 0;
     std::uint32_t receivers = 0, samples = 0, max_depth = 0;
     std::uint64_t seed = 0;
-    float exposure = 0;
+    std::optional<float> exposure;  ///< [EV]; nothing: 0
     unsigned threads = 0;
     ProgressStyle progress = ProgressStyle::automatic;
     std::vector<const CLI::Option*> picture_options;  ///< that say nothing of receivers

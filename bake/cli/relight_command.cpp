@@ -137,6 +137,9 @@ int run(const RelightCommand& options) {
     if (!terms) {
         return report_error(terms.error());
     }
+    if (auto status = check_light(options.light); !status) {
+        return report_error(status.error());
+    }
     const auto asset = open_asset(options.path);
     if (!asset) {
         return report_error(asset.error());

@@ -15,6 +15,7 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
+#include "bake/cli/progress.h"
 #include "bake/encode/shorten_rows.h"
 #include "formats/opal/terms.h"
 #include "runtime/shade.h"
@@ -23,7 +24,7 @@ namespace opaline::cli {
 namespace {
 
 struct RenderCommand {
-    std::string path, light, terms;
+    std::string path, light = "studio", terms;
     std::vector<std::string> emitters;
     CameraOptions camera;
     FrameOptions frame;
@@ -32,6 +33,7 @@ struct RenderCommand {
     std::optional<double> time_step;  ///< from frame to frame [s]
     std::optional<double> turn;       ///< [degrees]
     std::optional<std::uint32_t> coefficients;
+    ProgressStyle progress = ProgressStyle::automatic;
     double error_white = 0;  ///< errors by receiver in place of light, where it is above 0
 };
 
@@ -108,6 +110,9 @@ int run(const RenderCommand& options) {
     if (!terms) {
         return report_error(terms.error());
     }
+    if (auto status = check_light(options.light); !status) {
+        return report_error(status.error());
+    }
     const auto asset = open_asset(options.path);
     if (!asset) {
         return report_error(asset.error());
@@ -155,6 +160,7 @@ int run(const RenderCommand& options) {
             return code;
         }
     }
+    if (options.frame.on_progress) options.frame.on_progress({"render", 1, 1});
     if (options.frame.stats) {
         fmt::print("{:<16} {}\n", "frames", frames);
         fmt::print("{:<16} {}\n", "draw per frame", format_seconds(drawing.seconds / frames));
@@ -170,9 +176,7 @@ void add_render_command(CLI::App& app, Job& job) {
     command->add_option("file", options->path, "the .opal file")
         ->required()
         ->option_text("FILE.opal");
-    CLI::Option* const light = command->add_option("--light", options->light, light_help())
-                                   ->required()
-                                   ->option_text("ENV");
+    command->add_option("--light", options->light, light_help())->option_text("ENV [studio]");
     command
         ->add_option("-o,--output", options->frame.output,
                      ".png: tone-mapped, sRGB; .exr: linear radiance")
@@ -209,15 +213,24 @@ void add_render_command(CLI::App& app, Job& job) {
     command
         ->add_option("--receiver-errors", options->error_white,
                      "show the errors of rows that `bake --receiver-errors` stored in place of "
-                     "light, which need not be given: black for 0, then red, yellow, and white "
-                     "from E on; options of light and exposure change nothing")
+                     "light: black for 0, then red, yellow, and white from E on; options of light "
+                     "and exposure change nothing")
         ->check(real_number(1e-6, 10))
-        ->each([light](const std::string&) { light->required(false); })
         ->option_text("E");
     command->add_option("--threads", options->frame.threads, "0: one per core")
         ->transform(whole_number(0, 1024))
         ->option_text("T [0]");
     command->add_flag("--stats", options->frame.stats, "print timings");
+    add_progress_option(*command, options->progress);
+    group_options(
+        *command,
+        {{"", {"--light", "--rotate-light", "--output", "--size", "--exposure"}},
+         {"Camera",
+          {"--eye", "--azimuth", "--elevation", "--distance", "--target", "--up", "--fov"}},
+         {"Frames", {"--frames", "--time", "--time-step", "--turn"}},
+         {"What is shown",
+          {"--emitter", "--terms", "--tone-map", "--coefficients", "--receiver-errors"}}},
+        "How");
     command->footer(
         "A cloud layer lights the file's meshes and volumes as it is seen from the centre of "
         "their\n"
@@ -230,6 +243,7 @@ void add_render_command(CLI::App& app, Job& job) {
     command->callback([options, &job] {
         job = [options] {
             options->frame.turn = options->turn.value_or(options->time_step ? 0 : 360);
+            options->frame.on_progress = make_progress_printer(options->progress, "render");
             return run(*options);
         };
     });

@@ -112,6 +112,7 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     for (const bake::StageReport& stage : result.stages) {
         report["stages"].push_back({{"name", stage.name},
                                     {"seconds", stage.seconds},
+                                    {"cpu_seconds", stage.cpu_seconds},
                                     {"predicted_seconds", take_predicted(costs, stage.name)},
                                     {"rays", stage.rays},
                                     {"peak_rss_bytes", stage.peak_rss_bytes}});

@@ -84,6 +84,26 @@ void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOp
 
 }  // namespace
 
+void add_allow_path_option(CLI::App& command, std::vector<std::string>& folders) {
+    command
+        .add_option("--allow-path", folders,
+                    "folder whose files the scene and its media may name too, besides those in "
+                    "their own folders; may be repeated")
+        ->check(CLI::ExistingDirectory)
+        ->take_all()
+        ->allow_extra_args(false)
+        ->option_text("DIR");
+}
+
+void add_smooth_normals_option(CLI::App& command, double& degrees) {
+    command
+        .add_option("--smooth-normals", degrees,
+                    "of meshes without NORMAL: smooth across edges of less than this angle; 0: "
+                    "flat, as glTF says")
+        ->check(real_number(0, 180))
+        ->option_text("DEGREES [0]");
+}
+
 void add_subject_options(CLI::App& command, SceneOptions& options) {
     command
         .add_option("scene", options.scene,
@@ -97,6 +117,7 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
             "what translucent materials are made of; formats/media/README.md lists the keys")
         ->check(file_name())
         ->option_text("FILE.json");
+    add_allow_path_option(command, options.allowed_folders);
     command
         .add_option(
             "--effects", options.effects,
@@ -120,6 +141,7 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
                     "length of one unit of the scene file")
         ->check(real_number(kLeastUnit, kMostUnit))
         ->option_text("X [1]");
+    add_smooth_normals_option(command, options.smooth_normals);
     add_memory_option(command, options.memory_limit);
 }
 
@@ -167,7 +189,8 @@ void add_error_option(CLI::App& command, SceneOptions& options) {
 }
 
 formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
-                                                   const bake::Knobs& knobs) {
+                                                   const bake::Knobs& knobs,
+                                                   formats::CloudDetail detail) {
     bake::Context context;
     context.threads = options.bake.threads;
     const unsigned threads = bake::thread_count(context);
@@ -181,7 +204,12 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     const auto check_size = [&](const formats::SceneCounts& counts) {
         return check(bake::count_memory(counts));
     };
-    auto imported = open_scene(options.scene, {options.metres_per_unit, check_size}, options.media);
+    auto imported = open_scene(options.scene,
+                               {options.metres_per_unit,
+                                {options.allowed_folders.begin(), options.allowed_folders.end()},
+                                check_size,
+                                options.smooth_normals},
+                               options.media, detail);
     if (!imported) {
         return imported;
     }

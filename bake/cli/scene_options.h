@@ -2,9 +2,11 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "bake/plan/bake_plan.h"
 #include "formats/gltf/import_gltf.h"
+#include "formats/media/load_clouds.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {
@@ -12,14 +14,21 @@ namespace opaline::cli {
 /// `--metres-per-unit`: from a tenth of a nanometre to a light year.
 inline constexpr double kLeastUnit = 1e-10, kMostUnit = 1e16;
 
+/// `--smooth-normals`: of primitives without NORMAL.
+void add_smooth_normals_option(CLI::App& command, double& degrees);
+
 /// Options common to `bake`, `plan` and `sweep`.
 struct SceneOptions {
     std::string scene, media;
-    double metres_per_unit = 1.0;
+    std::vector<std::string> allowed_folders;
+    double metres_per_unit = 1.0, smooth_normals = 0.0;
     std::string effects = "auto";
     std::uint64_t memory_limit = 0;  ///< [bytes]; 0: what the machine has
     bake::BakeOptions bake;
 };
+
+/// `--allow-path`, as often as wanted.
+void add_allow_path_option(CLI::App& command, std::vector<std::string>& folders);
 
 /// The scene, its media, and options without influence on accuracy: effects, seed, threads, unit.
 void add_subject_options(CLI::App& command, SceneOptions& options);
@@ -33,7 +42,8 @@ void add_error_option(CLI::App& command, SceneOptions& options);
 /// Opens the scene and its media (open_scene). What a bake with these knobs is predicted to need
 /// more memory for than there is, is refused before it is built. Errors: also resource.
 formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
-                                                   const bake::Knobs& knobs);
+                                                   const bake::Knobs& knobs,
+                                                   formats::CloudDetail detail);
 
 /// The options of the bake with the effects to simulate: none named for `auto`, nor for `all`,
 /// which forces every one. Errors: usage, for those that are unknown or that this version does not

@@ -80,7 +80,7 @@ int run(const SweepCommand& options) {
     if (!knobs) {
         return report_error(knobs.error());
     }
-    const auto imported = open_scene(options.scene, *knobs);
+    const auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::fields);
     if (!imported) {
         return report_error(imported.error());
     }
@@ -113,16 +113,17 @@ int run(const SweepCommand& options) {
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
-    const auto show = make_progress_printer(options.progress);
+    const auto show = make_progress_printer(options.progress, "sweep");
     const auto result = bake::run_sweep(bake::all_effects(), imported->scene, wanted, context,
                                         [&](const bake::SweepStep& step) {
                                             if (show) {
-                                                show({"sweep", step.done, step.total});
+                                                show({"bakes", step.done, step.total});
                                             }
                                         });
     if (!result) {
         return report_error(result.error());
     }
+    if (show) show({"sweep", 1, 1});
     const bake::SweepAnalysis analysis = bake::analyse_sweep(*result);
     const auto json = bake::make_sweep_json(*result, analysis);
     const auto page = bake::make_report_page(*result, analysis, json);

@@ -63,8 +63,7 @@ std::string describe_unexpected(const CLI::App& command, const std::string& argu
                            suggest(name, option_names(command)));
     }
     if (command.get_parent() == nullptr) {
-        return fmt::format("there is no command '{}'{}", shorten(argument),
-                           suggest(argument, command_names(command)));
+        return describe_unknown_command(command, argument);
     }
     return fmt::format("'{}' is one argument too many", shorten(argument));
 }
@@ -98,6 +97,11 @@ std::string describe_mismatch(const CLI::App& command, const CLI::ParseError& er
 }
 
 }  // namespace
+
+std::string describe_unknown_command(const CLI::App& app, const std::string& name) {
+    return fmt::format("there is no command '{}'{}", shorten(name),
+                       suggest(name, command_names(app)));
+}
 
 std::string find_nearest(std::string_view wanted, const std::vector<std::string>& names) {
     std::string nearest;

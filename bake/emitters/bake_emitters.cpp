@@ -30,7 +30,7 @@ std::uint32_t caustic_particles(std::uint32_t particles) {
                     std::min(kMost, particles > kMost / kTimes ? kMost : kTimes * particles));
 }
 
-// Whether a caustic is worth more particles than the rest.
+// Whether caustics get particles of their own.
 bool is_bright(const ParticleLight& light) {
     double all = 0, caustic = 0;
     for (const ElementDeposit& deposit : light.all)
@@ -58,10 +58,10 @@ void append_own_light(const formats::Scene& scene, std::span<const Lamp> lamps,
             const formats::Material& material = scene.materials[scene.primitives[p].material];
             const bool has_image =
                 material.emission_image != formats::kNone && !scene.primitives[p].texcoord.empty();
-            emitters.own.push_back(
-                {p, e, material.emission, has_image ? material.emission_image : formats::kNoImage,
-                 has_image ? to_wrap(material.emission_wrap_u) : formats::Wrap::repeat,
-                 has_image ? to_wrap(material.emission_wrap_v) : formats::Wrap::repeat});
+            emitters.own.push_back({p, e, material.emission,
+                                    has_image ? material.emission_image : formats::kNoImage,
+                                    has_image ? material.emission_wrap_u : formats::Wrap::repeat,
+                                    has_image ? material.emission_wrap_v : formats::Wrap::repeat});
         }
     }
     std::ranges::sort(emitters.own, {}, &formats::OwnLight::primitive);

@@ -15,9 +15,8 @@ struct BounceColor {
 };
 
 /// At a point of a triangle, `weights` barycentric. What is mirrored does not count (onward_ray.h).
-/// Nothing of media, whose light is not known here (media_light.h), and of backs of single-sided
-/// surfaces.
-/// `view`: what textures are looked up over; null: at the point.
+/// Black for media, whose light is in media_light.h, and for backs of single-sided surfaces.
+/// `view`: footprint of texture look-ups; null: at the point.
 BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
                          const glm::vec3& weights, const TextureView* view = nullptr);
 

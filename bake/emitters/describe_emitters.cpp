@@ -3,6 +3,7 @@
 #include <array>
 
 #include "bake/emitters/emitter_knobs.h"
+#include "bake/volumes/volume_effects.h"
 
 namespace opaline::bake {
 namespace {
@@ -13,7 +14,7 @@ constexpr std::array<const KnobSpec*, 2> kKnobs{&kEmitterParticles, &kEmitterRay
 
 EffectDescriptor describe_emitters(Effect id) {
     return {.id = id,
-            .name = "emitters",
+            .name = kEmitters,
             .help = "light of lamps, glowing surfaces and lights in the scene",
             .knobs = kKnobs,
             .concerns_emitters = true};

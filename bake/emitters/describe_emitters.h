@@ -4,8 +4,8 @@
 
 namespace opaline::bake {
 
-/// Light of lamps in the scene. Emitters are no materials: the effect has no rules of theirs, and
-/// its rows stand beside those of the environment (plan_emitters.h, bake_emitters.h).
+/// Light of lamps in the scene. Emitters are no materials: the effect has no rules for them, and
+/// its rows are stored beside those of the environment (plan_emitters.h, bake_emitters.h).
 EffectDescriptor describe_emitters(Effect id);
 
 }  // namespace opaline::bake

@@ -106,7 +106,7 @@ EmitterErrorReport check_emitters(const EmitterCheck& check, std::uint64_t seed,
             rays += checked.rays;
             ++report.receivers_checked;
         });
-    // Where the truth's noise hides the error, the sum's standard error is what can be said of it.
+    // Where the truth's noise hides the error, report the standard error of the sum.
     const auto n = static_cast<double>(count);
     const double standard_error =
         count > 1 ? std::sqrt(std::max(0.0, squares - error * error / n) * n / (n - 1)) : 0;

@@ -15,7 +15,6 @@ inline bool is_lit(const RowLayout&, std::span<const PlanEntry> decisions) {
         return entry.on && entry.subject.kind == Subject::Kind::emitter;
     });
 }
-inline constexpr const char* kWhyDark = "nothing in the scene sends out light";
 inline double particles_for(double error) {
     return error >= 0.1 ? 20000 : error >= 0.04 ? 100000 : error >= 0.015 ? 400000 : 1600000;
 }
@@ -36,8 +35,7 @@ inline constexpr KnobSpec kEmitterParticles{
     .preset = {20000, 100000, 400000, 1600000},
     .for_target = emitter_knobs::particles_for,
     .label = "%g particles",
-    .matters = emitter_knobs::is_lit,
-    .why_idle = emitter_knobs::kWhyDark};
+    .matters = emitter_knobs::is_lit};
 
 /// Rays of a receiver to an emitter's surfaces, and to other surfaces.
 inline constexpr KnobSpec kEmitterRays{
@@ -52,7 +50,6 @@ inline constexpr KnobSpec kEmitterRays{
     .preset = {128, 512, 1024, 4096},
     .for_target = emitter_knobs::rays_for,
     .label = "%g rays",
-    .matters = emitter_knobs::is_lit,
-    .why_idle = emitter_knobs::kWhyDark};
+    .matters = emitter_knobs::is_lit};
 
 }  // namespace opaline::bake

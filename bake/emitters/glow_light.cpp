@@ -29,7 +29,7 @@ double turn_fraction(double x) {
     return x - std::floor(x);
 }
 
-// Sixteen rays from a receiver, and what each is worth.
+// Sixteen rays from a receiver and their weights.
 struct RayBlock {
     RayPacket packet;
     LaneMask lanes{};

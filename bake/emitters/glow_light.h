@@ -21,11 +21,11 @@ namespace opaline::bake {
 struct GlowLight {
     std::unique_ptr<runtime::VolumeLight> light;  ///< `lit` refers to it
     runtime::LitVolumes lit;  ///< for rays in the scene's frame, not in the world
-    Ball own, all;            ///< around what glows; around that and all that scatters its light
+    Ball own, all;            ///< around the emission; around emission and all scattering volumes
 };
 
-/// `glow`: number of the volume's light in the records of GLOW. Precondition: `volumes` holds what
-/// is baked of scene.volumes[volume], and outlives the result.
+/// `glow`: number of the volume's light in the records of GLOW. Precondition: `volumes` holds the
+/// baked scene.volumes[volume], and outlives the result.
 GlowLight make_glow_light(const formats::Scene& scene, std::uint32_t volume,
                           const formats::VolumesView& volumes, std::uint32_t glow,
                           unsigned threads);

@@ -13,7 +13,7 @@ namespace {
 constexpr std::array<double, 3> kSizes{0.8908987181403393, 1.4142135623730951, 2.244924096618746};
 constexpr std::size_t kMiddle = 1;
 
-/// A part of a surface: what it took, and whether it is joined to one value so far.
+/// A part of a surface: the power it received, and whether it is joined to one value so far.
 struct Joined {
     ElementDeposit deposit;
     double area = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "bake/scene/emission.h"
@@ -13,7 +14,9 @@
 namespace opaline::bake {
 namespace {
 
-constexpr int kTextureCuts = 4;  // halvings of a textured triangle's edges
+constexpr int kMostCuts = 4;            // halvings of a textured triangle's edges
+constexpr double kMostParts = 65536;    // of a lamp, about
+constexpr double kEvenRadiance = 0.01;  // of the brightest part: parts that differ less are one
 
 using Weights = std::array<glm::dvec3, 3>;  // barycentric coordinates of three corners
 
@@ -44,17 +47,7 @@ glm::dvec3 emission_in(const TriangleSource& from, const Weights& corners) {
     return {c.r, c.g, c.b};
 }
 
-void add_triangle(const TriangleSource& from, const Weights& weights, int cuts,
-                  std::vector<GlowingTriangle>& triangles) {
-    const auto& [a, b, c] = weights;
-    if (cuts > 0) {
-        const glm::dvec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-        for (const Weights& part :
-             {Weights{a, ab, ca}, Weights{ab, b, bc}, Weights{ca, bc, c}, Weights{ab, bc, ca}}) {
-            add_triangle(from, part, cuts - 1, triangles);
-        }
-        return;
-    }
+GlowingTriangle glowing_triangle(const TriangleSource& from, const Weights& weights) {
     const formats::Primitive& primitive = from.scene.primitives[from.primitive];
     GlowingTriangle triangle;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -67,12 +60,71 @@ void add_triangle(const TriangleSource& from, const Weights& weights, int cuts,
     const glm::dvec3 cross = glm::cross(triangle.corner[1] - triangle.corner[0],
                                         triangle.corner[2] - triangle.corner[0]);
     const double twice = glm::length(cross);
-    triangle.radiance = emission_in(from, weights);
-    if (!(twice > 0) || triangle.radiance == glm::dvec3(0)) return;
-    triangle.normal = cross / twice;
+    if (twice > 0) triangle.normal = cross / twice;
     triangle.area = twice / 2;
     triangle.is_two_sided = from.scene.materials[primitive.material].double_sided;
-    triangles.push_back(triangle);
+    return triangle;
+}
+
+// Whether parts differ by so little that their mean stands for them.
+bool are_even(std::span<const glm::dvec3> radiance) {
+    glm::dvec3 low(radiance[0]), high(radiance[0]);
+    for (const glm::dvec3& part : radiance) {
+        low = glm::min(low, part);
+        high = glm::max(high, part);
+    }
+    return glm::all(glm::lessThanEqual(high - low, kEvenRadiance * high));
+}
+
+// Appends a triangle and its parts. Returns its mean radiance; of a dark one nothing is appended.
+glm::dvec3 add_part(const TriangleSource& from, const Weights& weights, int cuts,
+                    std::vector<GlowingPart>& parts) {
+    GlowingPart part{.whole = glowing_triangle(from, weights), .next = 0, .is_even = cuts == 0};
+    if (!(part.whole.area > 0)) return glm::dvec3(0);
+    const std::size_t place = parts.size();
+    parts.push_back(part);
+    glm::dvec3& mean = part.whole.radiance;
+    if (cuts == 0) {
+        mean = emission_in(from, weights);
+    } else {
+        const auto& [a, b, c] = weights;
+        const glm::dvec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+        const std::array<Weights, 4> children{
+            {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}};
+        std::array<glm::dvec3, 4> radiance;
+        for (std::size_t k = 0; k < children.size(); ++k) {
+            radiance[k] = add_part(from, children[k], cuts - 1, parts);
+            mean += 0.25 * radiance[k];
+        }
+        // Children that are cut differ within.
+        part.is_even = are_even(radiance) &&
+                       std::all_of(parts.begin() + static_cast<std::ptrdiff_t>(place) + 1,
+                                   parts.end(), [](const GlowingPart& p) { return p.is_even; });
+        if (part.is_even) parts.resize(place + 1);
+    }
+    if (mean == glm::dvec3(0)) {
+        parts.resize(place);
+    } else {
+        part.next = static_cast<std::uint32_t>(parts.size());
+        parts[place] = part;
+    }
+    return mean;
+}
+
+// Halvings after which a part of the triangle has about a texel.
+int cuts_of(const TriangleSource& from, int most) {
+    const formats::Primitive& primitive = from.scene.primitives[from.primitive];
+    const formats::Image8& image =
+        from.scene.images[from.scene.materials[primitive.material].emission_image];
+    const glm::dvec2 a(primitive.texcoord[from.vertex[0]]);
+    const glm::dvec2 b = glm::dvec2(primitive.texcoord[from.vertex[1]]) - a,
+                     c = glm::dvec2(primitive.texcoord[from.vertex[2]]) - a;
+    // The longest edge, as texels: thin triangles cross many.
+    const glm::dvec2 size(image.width, image.height);
+    const double longest =
+        std::max({glm::length(size * b), glm::length(size * c), glm::length(size * (c - b))});
+    return longest > 1 ? static_cast<int>(std::min<double>(std::ceil(std::log2(longest)), most))
+                       : 0;
 }
 
 GlowingVoxels collect_voxels(const formats::Volume& volume) {
@@ -115,20 +167,34 @@ glm::dvec3 GlowingTriangle::power() const {
 LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
                               const ScenePyramids* textures) {
     LampSources sources;
+    const auto is_textured = [&](const formats::Primitive& primitive) {
+        return scene.materials[primitive.material].emission_image != formats::kNone &&
+               !primitive.texcoord.empty();
+    };
+    std::size_t textured = 0;
+    for (const std::uint32_t p : lamp.primitives) {
+        textured += is_textured(scene.primitives[p]) ? scene.primitives[p].index.size() / 3 : 0;
+    }
+    int most_cuts = kMostCuts;
+    while (most_cuts > 0 && static_cast<double>(textured) * std::pow(4, most_cuts) > kMostParts) {
+        --most_cuts;
+    }
     for (const std::uint32_t p : lamp.primitives) {
         const formats::Primitive& primitive = scene.primitives[p];
-        const bool is_textured =
-            scene.materials[primitive.material].emission_image != formats::kNone &&
-            !primitive.texcoord.empty();
         for (std::size_t i = 0; i + 2 < primitive.index.size(); i += 3) {
-            add_triangle({scene,
-                          p,
-                          {primitive.index[i], primitive.index[i + 1], primitive.index[i + 2]},
-                          textures},
-                         {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)},
-                         is_textured ? kTextureCuts : 0, sources.triangles);
+            const TriangleSource from{
+                scene,
+                p,
+                {primitive.index[i], primitive.index[i + 1], primitive.index[i + 2]},
+                textures};
+            add_part(from, {glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1)},
+                     is_textured(primitive) ? cuts_of(from, most_cuts) : 0, sources.parts);
         }
     }
+    for (const GlowingPart& part : sources.parts) {
+        if (part.is_even) sources.triangles.push_back(part.whole);
+    }
+    if (sources.triangles.size() == sources.parts.size()) sources.parts.clear();
     for (const std::uint32_t i : lamp.lights) {
         sources.lights.push_back(scene.lights[i]);
     }

@@ -22,6 +22,13 @@ struct GlowingTriangle {
     glm::dvec3 power() const;
 };
 
+/// A textured triangle or a part of it, that stands for its own parts where it is far away.
+struct GlowingPart {
+    GlowingTriangle whole;
+    std::uint32_t next = 0;  ///< the part after it and all of its own parts
+    bool is_even = false;    ///< its texture counts as constant: it has no parts
+};
+
 /// Voxels of a volume that glow: around each of them light linear to the next ones along each axis.
 struct GlowingVoxels {
     std::vector<glm::dvec3> centre;    ///< index coordinates
@@ -36,6 +43,9 @@ struct GlowingVoxels {
 /// What a lamp sends out.
 struct LampSources {
     std::vector<GlowingTriangle> triangles;
+    /// Where triangles are textured: all triangles, each before its parts, in the order of
+    /// `triangles`, which are those that are even. Else empty.
+    std::vector<GlowingPart> parts;
     std::vector<formats::Light> lights;
     GlowingVoxels voxels;
     /// Sphere around all surfaces of the scene: directional lights shine on its square.
@@ -45,8 +55,9 @@ struct LampSources {
     bool empty() const { return triangles.empty() && lights.empty() && voxels.centre.empty(); }
 };
 
-/// Textured triangles are cut into 256 parts. Facets without area are left out. `textures`: a part
-/// has the mean of its texture; null: what is at its middle.
+/// Textured triangles are cut in four, over and over, until a part is no larger than a texel or its
+/// texture is even, at most into 256 parts and all into about 65,000. Facets without area are left
+/// out. `textures`: a part has the mean of its texture; null: the value at its middle.
 LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
                               const ScenePyramids* textures = nullptr);
 

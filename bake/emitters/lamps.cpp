@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <string_view>
 #include <utility>
 
 #include "bake/scene/emission.h"
+#include "bake/volumes/volume_effects.h"
 #include "formats/opal/emitters.h"
 
 namespace opaline::bake {
@@ -151,7 +153,7 @@ std::size_t count_emitters(std::span<const Lamp> lamps, std::size_t glowing) {
 formats::Status check_lamps(const formats::Scene& scene, std::size_t lamps) {
     if (auto status = check_groups(scene); !status) return status;
     if (lamps <= formats::kMaxEmitters) return formats::ok_status();
-    return formats::make_error(formats::ErrorKind::bad_input, scene.source, "emitters",
+    return formats::make_error(formats::ErrorKind::bad_input, scene.source, std::string(kEmitters),
                                std::to_string(lamps) +
                                    " nodes and lights send out light; a file holds " +
                                    std::to_string(formats::kMaxEmitters) + " emitters at most",

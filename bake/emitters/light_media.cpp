@@ -38,7 +38,7 @@ void add_medium(const MediaJob& job, const LitMedium& medium, std::size_t lamps,
     }
 }
 
-// One more pass: what media send out of the light that `light` has arrive.
+// One more pass: the exitance of media under the irradiance in `light`.
 MediaLight pass(const MediaJob& job, std::span<const LitMedium> media,
                 std::span<const MediumPatches> patches, const LampLight& light,
                 const Context& context, std::uint64_t& rays) {
@@ -109,7 +109,7 @@ void read_columns(const MediaJob& job, const LampLight& light, const LitMedium& 
     }
 }
 
-// Light that the surface of a medium mirrors goes on to others, but stands in no rows.
+// Light that the surface of a medium mirrors reaches other surfaces, but is in no rows.
 void add_mirrored(const MediaJob& job, const LitMedium& medium, const MediumPatches& patches,
                   std::span<const glm::vec3> irradiance, MediaLight& exitance) {
     for (std::size_t i = 0; i < medium.primitives.size(); ++i) {

@@ -24,15 +24,15 @@ struct MediaJob {
 /// it; nothing of other primitives.
 using MediaRows = std::vector<std::vector<std::vector<formats::Rgb>>>;
 
-/// Finds what media make of lamps' light, with what they send to each other and to other surfaces
-/// and get back. `light` without media: its irradiance is completed by what media send to surfaces,
-/// and `exitance` is what they send.
+/// Solves for the light of lamps that media scatter, with the exchange between media and other
+/// surfaces. `light` comes without media; the light that media send to surfaces is added to its
+/// irradiance, and `exitance` is the light that leaves them.
 ///
-/// B = M (E_0 + K B) over media, M the media's answer, K the way from medium to medium, straight or
-/// by other surfaces (particles). M is asked once at coarse settings, patch by patch, and passes go
-/// on from B = 0 until one changes B by less than a hundredth. What further passes would add
-/// follows from the ratio of the last two, lamp by lamp and band by band. The rows are one more
-/// answer.
+/// B = M (E_0 + K B) over media, M the response of the media, K transport from medium to medium,
+/// straight or by other surfaces (particles). M is measured once at coarse settings, patch by
+/// patch. Passes start at B = 0 and end when one changes B by less than a hundredth. The remaining
+/// sum is extrapolated from the ratio of the last two, lamp by lamp and band by band. One more
+/// application of M gives the rows.
 MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<ElementLight> elements,
                       MediaLight& exitance, const Context& context, std::uint64_t& rays);
 

@@ -21,14 +21,14 @@ struct MediaLight {
 };
 
 /// Exitance [lm/m^2] of a lamp's light at a point of a triangle's front, its image included; 0 from
-/// behind and where the primitive sends out nothing. `view`: what the image is looked up over;
-/// null: at the point.
+/// behind and where the primitive emits nothing. `view`: footprint of the image's look-up; null: at
+/// the point.
 glm::dvec3 media_exitance(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
                           const TriangleSide& side, const glm::vec3& weights,
                           const TextureView* view = nullptr);
 
-/// What media send out of a lamp's light, as triangles that glow evenly: the mean of their corners,
-/// times that of the image, with `textures`, or what it is at their middle. `lamp_sources`: for the
+/// A lamp's light that leaves media, as evenly glowing triangles: the mean of their corners times
+/// the mean of the image with `textures`, else its value at their middle. `lamp_sources`: for the
 /// sphere around the scene.
 LampSources media_sources(const formats::Scene& scene, const MediaLight& media, std::size_t lamp,
                           const LampSources& lamp_sources, const ScenePyramids* textures = nullptr);

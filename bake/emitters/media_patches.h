@@ -13,11 +13,11 @@
 
 namespace opaline::bake {
 
-/// The largest basis of patches, n of 6 n n, and receivers that stand for all of it.
+/// The largest basis of patches, n of 6 n n, and the number of receivers that sample the surface.
 inline constexpr std::uint32_t kPatchBasis = 8;
 inline constexpr double kPatchPoints = 3 * 6 * kPatchBasis * kPatchBasis;
 
-/// Patches of one medium's surface, and what light on each makes all of them send out.
+/// Patches of one medium's surface, and the exitance of all patches per irradiance on each.
 struct MediumPatches {
     std::vector<std::uint32_t> of_receiver;          ///< of LitMedium
     std::vector<std::vector<std::uint32_t>> probes;  ///< of each patch, a few receivers: its light
@@ -44,8 +44,8 @@ std::vector<glm::vec3> light_patches(const MediumPatches& patches, const LampLig
                                      const LitMedium& medium, const Context& context,
                                      std::uint64_t& rays);
 
-/// Exitance [lm/m^2] of each patch from that, with what its surface mirrors, as if that went to all
-/// sides.
+/// Exitance [lm/m^2] of each patch from that, with the light that its surface mirrors, taken as
+/// diffuse.
 std::vector<glm::vec3> answer_patches(const MediumPatches& patches,
                                       std::span<const glm::vec3> irradiance);
 

@@ -53,7 +53,7 @@ double shadowing(double c_o, double c_l, double alpha) {
 /// A ray at the boundary of a medium.
 struct Crossing {
     double beyond = 1;  ///< index of the other side over this one's
-    double alpha = 0;   ///< GGX, of what does not scatter
+    double alpha = 0;   ///< GGX roughness of the boundary
     double choice = 0;  ///< random number
     std::array<double, 2> x{};
 };

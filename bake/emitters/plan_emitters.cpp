@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/largest_light.h"
 #include "bake/volumes/plan_volumes.h"
+#include "bake/volumes/volume_effects.h"
 
 namespace opaline::bake {
 namespace {
@@ -28,12 +30,14 @@ double distance_of(const GapBox& a, const GapBox& b) {
     return glm::length(glm::max(glm::dvec3(0), glm::max(a.low - b.high, b.low - a.high)));
 }
 
-// No surface sends out more of what arrives; 1 where metals, sheets or media have a say.
+// Upper bound on the share of light that a surface sends on; 1 with metals, thin walls or media.
 double largest_albedo(const formats::Scene& scene) {
     float most = 0;
     for (const formats::Primitive& primitive : scene.primitives) {
         const formats::Material& material = scene.materials[primitive.material];
-        if (material.medium || material.sheet || diffuse_share(material) < 1) return 1;
+        const bool is_wall = !material.sheet || (material.sheet->transmit == formats::Rgb{} &&
+                                                 material.sheet->clear == 0);
+        if (material.medium || !is_wall || diffuse_share(material) < 1) return 1;
         const formats::Rgb c = material.base_color;
         most = std::max({most, c.r, c.g, c.b});
     }
@@ -71,7 +75,7 @@ double bound_on_surfaces(const formats::Scene& scene, const formats::Volume& vol
 PlanEntry decide_volume(const formats::Scene& scene, const formats::Volume& volume,
                         bool has_surfaces, const Knobs& knobs) {
     PlanEntry entry;
-    entry.name = "emitters";
+    entry.name = kEmitters;
     entry.has_bands = true;
     entry.bound = has_surfaces ? bound_on_surfaces(scene, volume) : 0;
     const double least =
@@ -85,6 +89,53 @@ PlanEntry decide_volume(const formats::Scene& scene, const formats::Volume& volu
     return entry;
 }
 
+// Of a ball around all surfaces [m].
+double scene_radius(const formats::Scene& scene) {
+    GapBox surfaces;
+    for (const formats::Primitive& primitive : scene.primitives) {
+        for (const glm::vec3& position : primitive.position)
+            surfaces.include(glm::dvec3(position));
+    }
+    return 0.5 * glm::length(surfaces.high - surfaces.low);
+}
+
+// Of a lamp's lights: its flux into that ball over that of a sky of radiance 1, which is pi times
+// the ball's surface. Exporters write lux and candela: often hundreds of times as much.
+double times_sky(const formats::Scene& scene, const Lamp& lamp, double radius) {
+    const double sky = 4 * std::numbers::pi * std::numbers::pi * radius * radius;
+    double flux = 0;
+    for (const std::uint32_t index : lamp.lights) {
+        const formats::Light& light = scene.lights[index];
+        using enum formats::Light::Type;
+        const double reach =
+            light.type == directional ? std::numbers::pi * radius * radius
+            : light.type == point
+                ? 4 * std::numbers::pi
+                : 2 * std::numbers::pi * (1 - std::cos(static_cast<double>(light.outer_cone)));
+        flux += reach * static_cast<double>(formats::luminance(light.intensity));
+    }
+    return sky > 0 ? flux / sky : 0;
+}
+
+std::string describe_light(const formats::Scene& scene, const Lamp& lamp, double radius) {
+    char text[128];
+    if (!lamp.lights.empty()) {
+        std::snprintf(text, sizeof text,
+                      "it sends out light, %.3g times that of a sky of radiance 1: rows of its own",
+                      times_sky(scene, lamp, radius));
+        return text;
+    }
+    float most = 0;
+    for (const std::uint32_t p : lamp.primitives) {
+        most = std::max(most,
+                        formats::luminance(scene.materials[scene.primitives[p].material].emission));
+    }
+    std::snprintf(text, sizeof text,
+                  "its surfaces glow, %.3g times as bright as a sky of radiance 1: rows of its own",
+                  static_cast<double>(most));
+    return text;
+}
+
 }  // namespace
 
 EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
@@ -93,15 +144,15 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
         std::ranges::any_of(scene.primitives, [](const auto& p) { return !p.index.empty(); });
     std::uint32_t number = 0;
     std::vector<Lamp> lamps = list_lamps(scene);
+    const double radius = lamps.empty() ? 0 : scene_radius(scene);
     for (const Lamp& lamp : lamps) {
         PlanEntry entry;
-        entry.name = "emitters";
+        entry.name = kEmitters;
         entry.subject = {Subject::Kind::emitter, number++, "emitter '" + lamp.name + "'"};
         entry.has_bands = true;
         entry.bound = has_surfaces ? std::numeric_limits<double>::quiet_NaN() : 0;
         entry.on = has_surfaces && is_wanted(knobs, entry.name);
-        entry.reason = entry.on       ? (lamp.lights.empty() ? "its surfaces glow: rows of its own"
-                                                             : "it sends out light: rows of its own")
+        entry.reason = entry.on       ? describe_light(scene, lamp, radius)
                        : has_surfaces ? "left out by --effects"
                                       : "there is no surface that it could light";
         if (entry.on) plan.lamps.push_back(lamp);

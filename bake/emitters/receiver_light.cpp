@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kReceiversPerBlock = 16;
 constexpr std::uint32_t kMostGathered = 16;
-constexpr double kLeastGathered = 1e-3;  // of what a ray gathers
+constexpr double kLeastGathered = 1e-3;  // of the light that a ray gathers
 constexpr double kNear = 0.01;           // of the scene: a receiver's surface is not farther
 constexpr std::uint32_t kLeastGlowRays = 16;
 
@@ -211,7 +211,8 @@ void add_caustics(const LampLight& light, const Receiver& receiver, std::span<gl
     if (std::ranges::all_of(light.caustics, &ElementLight::empty)) return;
     const ElementLayout& layout =
         light.caustic_layout != nullptr ? *light.caustic_layout : light.layout;
-    // Four rays down to what lies around it: at a vertex, some of the elements that meet there.
+    // Four rays down to the elements around the receiver: at a vertex some of those that meet
+    // there.
     constexpr std::uint32_t kRays = 4;
     RayPacket packet = rays_from(receiver.origin);
     LaneMask lanes{};

@@ -17,14 +17,14 @@
 
 namespace opaline::bake {
 
-/// Rays average over many elements, which may be noisier and blur less than those that are read one
-/// by one.
+/// Rays average over many elements, which may be smaller and noisier than elements that are read
+/// one by one.
 inline constexpr JoinRule kGatheredElements{0.25, 0};
 /// Paths of a caustic draw eight numbers or more, and the polygon of all their steps is far larger
 /// than the distance of similar particles.
 inline constexpr JoinRule kCausticElements{1.0 / 64, 16};
 
-/// All lamps of a scene and what their particles brought to its surfaces.
+/// All lamps of a scene and the light that their particles brought to its surfaces.
 struct LampLight {
     const formats::Scene& scene;
     const RayScene& rays;
@@ -34,10 +34,11 @@ struct LampLight {
     std::span<const ElementLight> elements;
     std::uint32_t samples = 1;  ///< shadow rays to a lamp, and gather rays
     std::uint64_t seed = 0;
-    const MediaLight* media = nullptr;  ///< what media send out again; null: nothing
+    const MediaLight* media = nullptr;  ///< light that leaves media; null: none
     /// Reflected light is filtered over the cells of gather rays; null: colours of points.
     const ScenePyramids* textures = nullptr;
-    /// Of each lamp, what metals and media alone passed on; an empty one, or none: nothing.
+    /// Caustics of each lamp: light that only metals and media passed on; an empty one, or none:
+    /// none.
     std::span<const ElementLight> caustics = {};
     const ElementLayout* caustic_layout = nullptr;  ///< their elements; null: `layout`
     const DensitySpace* volumes = nullptr;          ///< that dim light on its way; null: none
@@ -52,8 +53,8 @@ struct LampLight {
 std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& receiver,
                                       std::uint64_t key, std::uint64_t& rays);
 
-/// Adds to `total`, of each lamp, what metals and media alone pass on from it to a receiver [lx]:
-/// the mean over the elements around it.
+/// Adds the caustics of each lamp at a receiver [lx] to `total`: the mean over the elements around
+/// it.
 void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
                   std::uint64_t& rays);
 

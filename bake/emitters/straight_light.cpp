@@ -28,7 +28,7 @@ class ShadowRays {
           packet_(rays_from(receiver.origin)),
           rays_(rays) {}
 
-    /// Adds `light` to what arrives if nothing is up to `reach` along the unit direction.
+    /// Adds `light` to the irradiance if nothing blocks the unit direction up to `reach`.
     void add(const glm::vec3& direction, float reach, const glm::dvec3& light) {
         packet_.dir_x[count_] = direction.x;
         packet_.dir_y[count_] = direction.y;
@@ -84,14 +84,43 @@ double geometry(const glm::dvec3& way, const glm::dvec3& normal, const glm::dvec
                       : 0.0;
 }
 
+// The triangles that a lamp is to a point: textured ones in parts that are even or far from it.
+std::vector<const GlowingTriangle*> triangles_from(const LampSources& lamp,
+                                                   const glm::dvec3& point) {
+    constexpr double kFar = 4;  // radii
+    std::vector<const GlowingTriangle*> triangles;
+    if (lamp.parts.empty()) {
+        triangles.reserve(lamp.triangles.size());
+        for (const GlowingTriangle& triangle : lamp.triangles) {
+            triangles.push_back(&triangle);
+        }
+        return triangles;
+    }
+    for (std::size_t i = 0; i < lamp.parts.size();) {
+        const GlowingPart& part = lamp.parts[i];
+        const auto& corner = part.whole.corner;
+        const glm::dvec3 centre = (corner[0] + corner[1] + corner[2]) / 3.0;
+        double radius = 0;  // squared
+        for (const glm::dvec3& at : corner) {
+            radius = std::max(radius, glm::dot(at - centre, at - centre));
+        }
+        const glm::dvec3 way = point - centre;
+        const bool is_taken = part.is_even || glm::dot(way, way) > kFar * kFar * radius;
+        if (is_taken) triangles.push_back(&part.whole);
+        i = is_taken ? part.next : i + 1;
+    }
+    return triangles;
+}
+
 glm::dvec3 from_triangles(const LampSources& lamp, const Receiver& receiver, std::uint32_t samples,
                           ShadowRays shadow) {
     const glm::dvec3 point(receiver.origin), normal(receiver.normal);
-    std::vector<double> factor(lamp.triangles.size()), cumulative(lamp.triangles.size());
+    const std::vector<const GlowingTriangle*> triangles = triangles_from(lamp, point);
+    std::vector<double> factor(triangles.size()), cumulative(triangles.size());
     glm::dvec3 total(0);
     double sum = 0;
     for (std::size_t t = 0; t < factor.size(); ++t) {
-        const GlowingTriangle& triangle = lamp.triangles[t];
+        const GlowingTriangle& triangle = *triangles[t];
         factor[t] = triangle_irradiance(triangle, point, normal);
         total += factor[t] * triangle.radiance;
         sum += factor[t] * largest_band(triangle.radiance);
@@ -104,7 +133,7 @@ glm::dvec3 from_triangles(const LampSources& lamp, const Receiver& receiver, std
         const auto t = std::min<std::size_t>(
             static_cast<std::size_t>(std::ranges::upper_bound(cumulative, at) - cumulative.begin()),
             factor.size() - 1);
-        const GlowingTriangle& triangle = lamp.triangles[t];
+        const GlowingTriangle& triangle = *triangles[t];
         const glm::dvec2 uv = spread_point(i);
         const glm::dvec3 way = sample_triangle_folded(triangle.corner, uv.x, uv.y).P - point;
         const double distance = glm::length(way);
@@ -141,7 +170,7 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
                            const glm::dvec3& normal) {
     const double side = glm::dot(triangle.normal, point - triangle.corner[0]);
     if (side == 0 || (side < 0 && !triangle.is_two_sided)) return 0;
-    // Four corners at most, once what is below the horizon is cut away.
+    // At most four corners, once the part below the horizon is cut off.
     std::array<glm::dvec3, 4> way;
     std::size_t count = 0;
     for (std::size_t k = 0; k < 3; ++k) {

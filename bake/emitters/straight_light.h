@@ -19,7 +19,8 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
 
 /// Irradiance [lx] that comes from a lamp straight to a receiver.
 ///
-/// Triangles: exact unoccluded irradiance, times the mean visibility of `samples` points, spread
+/// Triangles, textured ones as parts that are small beside their distance: exact unoccluded
+/// irradiance, times the mean visibility of `samples` points, spread
 /// over them in proportion to it: without noise where nothing or all is hidden. Lights: one shadow
 /// ray each. Light of voxels: glow_light.h. `volumes` dim all; null: none. `rays` counts those
 /// traced.

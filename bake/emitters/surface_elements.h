@@ -56,12 +56,12 @@ class ElementLayout {
     /// The element around a point, or size() where the side has none. `weights`: barycentric.
     std::size_t element(const TriangleSide& side, const glm::dvec3& weights) const;
 
-    /// Joins elements as far as footprints reach, and spreads what each group took over its area.
-    /// Siblings join if all are whole and their parent is not larger than s times the footprints in
-    /// it, in the mean of logarithms weighted by power. What arrives where nothing else did joins
-    /// anything. Levels are a factor of four apart: the mean over three sizes s around sqrt(2),
-    /// spread over that factor, follows the footprint. Every group's mean is what arrived in it
-    /// over its area.
+    /// Joins elements as far as footprints reach, and spreads the power of each group over its
+    /// area. Siblings join if all are whole and their parent is not larger than s times the
+    /// footprints in it, in the mean of logarithms weighted by power. What arrives where nothing
+    /// else did joins anything. Levels are a factor of four apart: the mean over three sizes s
+    /// around sqrt(2), spread over that factor, follows the footprint. Every group's mean is what
+    /// arrived in it over its area.
     ElementLight join(std::span<const ElementDeposit> deposits, const JoinRule& rule = {}) const;
 
   private:

@@ -46,7 +46,7 @@ struct Tracer {
     DifferentialRules rules;
 };
 
-// What the particle stands for of the surface, to look its textures up over.
+// Footprint of the particle on the surface, over which its textures are filtered.
 std::optional<TextureView> view_of_footprint(const Tracer& tracer, const PathDifferential& path,
                                              const Arrival& at) {
     const ScenePyramids* const textures = tracer.run.textures;
@@ -62,7 +62,7 @@ std::optional<TextureView> view_of_footprint(const Tracer& tracer, const PathDif
     return TextureView{*textures, moments};
 }
 
-// What becomes of a particle at a surface: how its ray goes on, what share of its power.
+// Continuation of a particle at a surface: its ray and its share of the power.
 struct Choice {
     glm::dvec3 direction{0}, power{0};
     bool crosses = false, is_diffuse = false;

@@ -32,7 +32,7 @@ struct ParticleLight {
     std::vector<ElementDeposit> caustic;
 };
 
-/// What a lamp brings to each element of a scene, by particles [Suykens2001].
+/// Light of a lamp at each element of a scene, by particles [Suykens2001].
 ///
 /// A particle of 1 / N of the lamp's power gives it, at each surface that it meets, to the element
 /// there, with its footprint: the polygon of global steps (N survival)^(-1/M), limited where its

@@ -26,8 +26,8 @@ struct TriangleCluster {
 struct TriangleClusters {
     std::vector<std::uint32_t> order;  ///< numbers of triangles; clusters are ranges
     std::vector<TriangleCluster> charts;
-    /// Of each cluster of more than one triangle: whether it is connected, and its halves are: one
-    /// value of irradiance may stand for it.
+    /// For each cluster of more than one triangle: whether it and its halves are connected, so that
+    /// one value of irradiance may represent it.
     std::vector<bool> is_patch;
 
     bool joins(const TriangleCluster& cluster) const {

@@ -180,8 +180,8 @@ struct BackwardPath {
         return direction;
     }
 
-    // Along a flight through volumes, to the surface that ends it: what they send out by themselves
-    // joins, what scatters turns the path. Nothing: the path is lost.
+    // Follows a flight through volumes to the surface that ends it: emission is added, scattering
+    // turns the path. Nothing: the path is lost.
     std::optional<Arrival> fly(glm::dvec3& from, glm::dvec3& direction, glm::dvec3& throughput,
                                glm::dvec3& sum) {
         for (std::uint32_t n = 0; n < kMostTurns; ++n) {

@@ -23,10 +23,9 @@ struct EmitterCheck {
     std::span<const formats::PrimitiveRecord> primitives;
     std::span<const LampSources> sources;
     formats::EmittersView emitters;
-    /// What media send out, and what metals and media alone pass on from lamps, are taken from here
-    /// as they are; null: nothing.
+    /// Source of the exitance of media and of caustics, which are not estimated anew; null: none.
     const LampLight* known = nullptr;
-    const DensitySpace* volumes = nullptr;   ///< that stand between surfaces; null: none
+    const DensitySpace* volumes = nullptr;   ///< between surfaces; null: none
     std::span<const GlowingGrid> glow = {};  ///< of them, those that are lamps
 };
 
@@ -41,7 +40,7 @@ TrueSources collect_true_sources(std::span<const LampSources> lamps);
 
 /// Irradiance [lx] of a receiver from all lamps, by `paths` paths backward from it: a point of
 /// an emitter's surface and one of the lights at every vertex, and any number of bounces, diffuse
-/// or mirrored by metal; at media they end in what is known of these, or go straight through. In
+/// or mirrored by metal; at media they end in the exitance given above, or go straight through. In
 /// volumes they are scattered and gather the volumes' own light; light of other lamps is dimmed.
 /// It shares surfaces' colours with what it checks, but no elements, particles or form factors.
 /// `sources`: those of check.sources. (seed, key): key the numbers. `rays` counts those traced.

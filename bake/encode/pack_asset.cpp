@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "bake/encode/pack_holes.h"
-#include "bake/encode/pack_normal_maps.h"
 #include "bake/scene/lobe_record.h"
 #include "bake/scene/marble.h"
 
@@ -87,8 +85,8 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         const bool mapped = has_image && !p.texcoord.empty();
         if (mapped && material.base_color_image != kNone) {
             record.base_color_image = material.base_color_image;
-            record.wrap_u = to_wrap(material.wrap_u);
-            record.wrap_v = to_wrap(material.wrap_v);
+            record.wrap_u = material.wrap_u;
+            record.wrap_v = material.wrap_v;
         }
         record.flags =
             (material.double_sided || layout.sheet ? PrimitiveRecord::kDoubleSided : 0) |

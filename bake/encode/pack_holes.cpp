@@ -1,4 +1,4 @@
-#include "bake/encode/pack_holes.h"
+#include "bake/encode/pack_asset.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -28,7 +28,9 @@ float within_alpha(float x) {
 
 void append_vertex_alpha(const Scene& scene, std::vector<float>& alphas) {
     for (const Primitive& p : scene.primitives) {
-        const bool has_alpha = has_holes(scene.materials[p.material]) && !p.alpha.empty();
+        const bool has_alpha =
+            scene.materials[p.material].alpha_mode != Material::AlphaMode::opaque &&
+            has_holes(scene.materials[p.material]) && !p.alpha.empty();
         for (std::size_t v = 0; v < p.position.size(); ++v) {
             alphas.push_back(has_alpha ? within_alpha(p.alpha[v]) : 1.0f);
         }
@@ -44,19 +46,24 @@ Holes pack_holes(const Scene& scene, std::vector<PreviewImageData>& images) {
         const Primitive& p = scene.primitives[i];
         const Material& material = scene.materials[p.material];
         if (!has_holes(material)) continue;
+        const bool is_whole = material.alpha_mode == Material::AlphaMode::opaque;  // and glass
         HoleRecord hole;
         hole.primitive = i;
-        hole.alpha = within_alpha(material.alpha);
+        if (is_clear(material)) {
+            store_clear_share({material.sheet->clear, std::min(material.sheet->eta, kLargestHalf)},
+                              hole);
+        }
+        hole.alpha = is_whole ? 1 : within_alpha(material.alpha);
         hole.cutoff = material.alpha_cutoff;
         hole.mode =
             material.alpha_mode == Material::AlphaMode::mask ? HoleMode::mask : HoleMode::blend;
-        if (material.base_color_image != kNone && !p.texcoord.empty()) {
+        if (!is_whole && material.base_color_image != kNone && !p.texcoord.empty()) {
             const auto [found, is_new] = packed.try_emplace(
                 material.base_color_image, static_cast<std::uint32_t>(images.size()));
             if (is_new) images.push_back(alpha_of(scene.images[material.base_color_image]));
             hole.image = found->second;
-            hole.wrap_u = to_wrap(material.wrap_u);
-            hole.wrap_v = to_wrap(material.wrap_v);
+            hole.wrap_u = material.wrap_u;
+            hole.wrap_v = material.wrap_v;
         }
         holes.record.push_back(hole);
     }

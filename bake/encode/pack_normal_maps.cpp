@@ -1,4 +1,4 @@
-#include "bake/encode/pack_normal_maps.h"
+#include "bake/encode/pack_asset.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -20,8 +20,8 @@ formats::NormalMaps pack_normal_maps(const formats::Scene& scene) {
         formats::NormalMapRecord map;
         map.primitive = i;
         map.image = material.normal_image;
-        map.wrap_u = to_wrap(material.normal_wrap_u);
-        map.wrap_v = to_wrap(material.normal_wrap_v);
+        map.wrap_u = material.normal_wrap_u;
+        map.wrap_v = material.normal_wrap_v;
         map.scale = material.normal_scale;
         if (material.sheet) {
             formats::store_sheet_shares({material.sheet->reflect, material.sheet->transmit}, map);

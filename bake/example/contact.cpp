@@ -1,4 +1,4 @@
-#include "bake/example/contact.h"
+#include "bake/example/solid_mesh.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace opaline::bake {
 namespace {
 
 // The point between a and b at which the value is 0; exactly one of them has a value below 0.
-glm::dvec3 find_crossing(const Field& solid, double gap, const TriangleMesh& floor,
+glm::dvec3 find_crossing(const ScalarField& solid, double gap, const TriangleMesh& floor,
                          const std::vector<double>& value, std::uint32_t a, std::uint32_t b) {
     glm::dvec3 inside = floor.position[std::min(a, b)], outside = floor.position[std::max(a, b)];
     if (value[std::max(a, b)] < 0) {
@@ -72,7 +72,7 @@ bool crosses(double a, double b) {
 }
 
 // Moves the ends of crossing edges that are within a quarter of the edge of the curve.
-void snap(const Field& solid, double gap, std::vector<double>& value, TriangleMesh& floor) {
+void snap(const ScalarField& solid, double gap, std::vector<double>& value, TriangleMesh& floor) {
     constexpr double kReach = 0.25;  // of an edge
     std::vector<double> nearest(value.size(), std::numeric_limits<double>::infinity());
     std::vector<glm::dvec3> target = floor.position;
@@ -97,7 +97,7 @@ void snap(const Field& solid, double gap, std::vector<double>& value, TriangleMe
 }
 
 // Splits the triangles that still lie on both sides, at the points where their edges cross.
-void split(const Field& solid, double gap, std::vector<double>& value, TriangleMesh& floor) {
+void split(const ScalarField& solid, double gap, std::vector<double>& value, TriangleMesh& floor) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> made;
     const auto crossing_of = [&](std::uint32_t a, std::uint32_t b) {
         const auto [entry, is_new] =
@@ -144,7 +144,7 @@ void split(const Field& solid, double gap, std::vector<double>& value, TriangleM
 
 }  // namespace
 
-void cut_at_contact(const Field& solid, double gap, TriangleMesh& floor) {
+void cut_at_contact(const ScalarField& solid, double gap, TriangleMesh& floor) {
     std::vector<double> value(floor.position.size());
     for (std::size_t v = 0; v < value.size(); ++v) {
         value[v] = solid(floor.position[v]) - gap;

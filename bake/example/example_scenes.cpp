@@ -5,20 +5,11 @@
 #include <string>
 #include <utility>
 
-#include "bake/example/bricks.h"
-#include "bake/example/contact.h"
 #include "bake/example/density_fields.h"
 #include "bake/example/example_table.h"
-#include "bake/example/floor.h"
-#include "bake/example/knot.h"
-#include "bake/example/lamp.h"
-#include "bake/example/leaves.h"
-#include "bake/example/playing_pieces.h"
-#include "bake/example/polygonize.h"
-#include "bake/example/remesh.h"
+#include "bake/example/scene_parts.h"
+#include "bake/example/solid_mesh.h"
 #include "bake/example/sphere.h"
-#include "bake/example/stratus.h"
-#include "bake/example/swan_field.h"
 
 namespace opaline::bake {
 namespace {

@@ -9,7 +9,7 @@ namespace opaline::bake {
 
 /// An implicit solid: negative inside, zero on the surface, positive outside, close to the signed
 /// distance [mm] near the surface. Called from several threads at once.
-using Field = std::function<double(const glm::dvec3&)>;
+using ScalarField = std::function<double(const glm::dvec3&)>;
 
 /// Axis-aligned box, low <= high in each axis.
 struct Box {
@@ -36,7 +36,7 @@ inline double ellipsoid(const glm::dvec3& p, const glm::dvec3& radii) {
 }
 
 /// Direction of steepest increase of the field, not normalised, by differences over `step` [mm].
-inline glm::dvec3 gradient(const Field& field, const glm::dvec3& p, double step) {
+inline glm::dvec3 gradient(const ScalarField& field, const glm::dvec3& p, double step) {
     // Four samples at the corners of a tetrahedron: as accurate to first order as six on the axes.
     constexpr glm::dvec3 kCorners[] = {{1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {1, 1, 1}};
     glm::dvec3 sum(0.0);

@@ -1,4 +1,4 @@
-#include "bake/example/floor.h"
+#include "bake/example/scene_parts.h"
 
 #include <algorithm>
 #include <cmath>

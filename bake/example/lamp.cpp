@@ -1,4 +1,4 @@
-#include "bake/example/lamp.h"
+#include "bake/example/scene_parts.h"
 
 #include <array>
 #include <vector>

@@ -1,4 +1,4 @@
-#include "bake/example/leaves.h"
+#include "bake/example/scene_parts.h"
 
 #include <cmath>
 #include <numbers>

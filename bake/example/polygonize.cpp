@@ -1,4 +1,4 @@
-#include "bake/example/polygonize.h"
+#include "bake/example/solid_mesh.h"
 
 #include <algorithm>
 #include <array>
@@ -32,7 +32,8 @@ struct Grid {
 
 /// Samples one block of nodes. Far from the surface the value at the centre is used for all,
 /// because only its sign matters.
-void sample_block(const Field& field, Grid& grid, std::size_t bx, std::size_t by, std::size_t bz) {
+void sample_block(const ScalarField& field, Grid& grid, std::size_t bx, std::size_t by,
+                  std::size_t bz) {
     const std::size_t x1 = std::min(bx + kBlock, grid.nx), y1 = std::min(by + kBlock, grid.ny),
                       z1 = std::min(bz + kBlock, grid.nz);
     const double half = double{kBlock - 1} / 2.0;
@@ -53,7 +54,7 @@ void sample_block(const Field& field, Grid& grid, std::size_t bx, std::size_t by
     }
 }
 
-Grid sample_grid(const Field& field, const Box& bounds, double cell) {
+Grid sample_grid(const ScalarField& field, const Box& bounds, double cell) {
     const auto nodes = [&](double low, double high) {
         return static_cast<std::size_t>(std::ceil((high - low) / cell)) + 1;
     };
@@ -173,7 +174,7 @@ void for_each_cell(const Grid& grid, const Visit& visit) {
 
 }  // namespace
 
-TriangleMesh polygonize(const Field& field, const Box& bounds, double cell) {
+TriangleMesh polygonize(const ScalarField& field, const Box& bounds, double cell) {
     const Grid grid = sample_grid(field, bounds, cell);
     const std::size_t step[3] = {1, grid.nx, grid.nx * grid.ny};
     TriangleMesh mesh;

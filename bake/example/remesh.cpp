@@ -1,4 +1,4 @@
-#include "bake/example/remesh.h"
+#include "bake/example/solid_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace opaline::bake {
 namespace {
 
 /// Sets every vertex's normal, after moving it toward the surface along the normal it has.
-void drop_onto_surface(const Field& field, double step, TriangleMesh& mesh) {
+void drop_onto_surface(const ScalarField& field, double step, TriangleMesh& mesh) {
     for_each_index(mesh.position.size(), [&](std::size_t v) {
         glm::dvec3 &p = mesh.position[v], &n = mesh.normal[v];
         if (glm::dot(n, n) > 0.0) {
@@ -123,7 +123,7 @@ void round_tight_folds(TriangleMesh& mesh) {
 
 }  // namespace
 
-void remesh(const Field& field, const RemeshOptions& options, TriangleMesh& mesh) {
+void remesh(const ScalarField& field, const RemeshOptions& options, TriangleMesh& mesh) {
     const double step = 0.1 * options.shortest;
     mesh.normal.assign(mesh.position.size(), glm::dvec3(0.0));
     drop_onto_surface(field, step, mesh);

@@ -1,4 +1,4 @@
-#include "bake/example/swan_field.h"
+#include "bake/example/scene_parts.h"
 
 #include <array>
 #include <cassert>

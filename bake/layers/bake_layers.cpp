@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <utility>
 
 #include "bake/layers/layer_knobs.h"
 #include "bake/layers/layer_tables.h"
+#include "bake/layers/plan_layers.h"
 
 namespace opaline::bake {
 namespace {
@@ -131,9 +133,10 @@ formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& con
             baked.droplets.emplace_back();
             continue;
         }
-        auto droplets = run_stage(log, "droplets of clouds", "cloud", [&](std::uint64_t&) {
-            return scatter_bands(layer, radius_sampling(job.knobs), context);
-        });
+        auto droplets =
+            run_stage(log, "droplets of clouds", std::string(kCloud), [&](std::uint64_t&) {
+                return scatter_bands(layer, radius_sampling(job.knobs), context);
+            });
         if (!droplets) {
             return std::move(droplets).error();
         }
@@ -141,7 +144,7 @@ formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& con
         append_thickness(layer, record, baked.clouds);
         append_ground(layer, record, baked.clouds);
         record.first_value = baked.clouds.value.size();
-        run_stage(log, "tables of clouds", "cloud", [&](std::uint64_t&) {
+        run_stage(log, "tables of clouds", std::string(kCloud), [&](std::uint64_t&) {
             for (const DropletBand& band : *droplets) {
                 const auto values =
                     make_band_tables(band, sizes, {layout.often, layer.paper}, context);

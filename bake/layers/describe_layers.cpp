@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "bake/layers/calibrate_layers.h"
 #include "bake/layers/layer_knobs.h"
+#include "bake/layers/plan_layers.h"
 
 namespace opaline::bake {
 namespace {
@@ -14,16 +14,15 @@ constexpr std::array<const KnobSpec*, 2> kCloudKnobs{&kCloudStep, &kCloudNodes};
 
 EffectDescriptor describe_cloud(Effect id) {
     return {.id = id,
-            .name = "cloud",
+            .name = kCloud,
             .help = "light scattered by the droplets of cloud layers",
             .knobs = kCloudKnobs,
-            .concerns_layers = true,
-            .calibrate = calibrate_layers};
+            .concerns_layers = true};
 }
 
 EffectDescriptor describe_radiosity(Effect id) {
     return {.id = id,
-            .name = "radiosity",
+            .name = kRadiosity,
             .help = "light between cloud layers and the ground",
             .concerns_layers = true};
 }

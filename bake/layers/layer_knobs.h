@@ -25,7 +25,6 @@ inline constexpr std::array kStepTruths{0.01, 0.02};
 inline constexpr std::array kNodeLadder{8.0, 12.0, 15.0, 18.0, 24.0, 32.0};
 inline constexpr std::array kNodeDiagonal{12.0, 15.0, 18.0, 24.0, 32.0};
 inline constexpr std::array kNodeTruths{40.0, 32.0};
-inline constexpr const char* kWhyClear = "no cloud layer is seen";
 // What the presets err by: tests/bench/RESULTS.md, "Cloud layers".
 inline double step_for(double error) {
     return error >= 0.06 ? 0.3 : error >= 0.02 ? 0.1 : error >= 0.008 ? 0.03 : 0.02;
@@ -56,8 +55,7 @@ inline constexpr KnobSpec kCloudStep{
                .words = "resonances of spheres, narrower than the step, are met by chance",
                .rate = 0.5,
                .fine_is_small = true},
-    .matters = layer_knobs::is_cloudy,
-    .why_idle = layer_knobs::kWhyClear};
+    .matters = layer_knobs::is_cloudy};
 
 /// Size of the tables of a layer.
 inline constexpr KnobSpec kCloudNodes{
@@ -78,8 +76,7 @@ inline constexpr KnobSpec kCloudNodes{
     .theory = {.label = "cosines of a cloud layer's table",
                .words = "square of the distance between nodes, where radiance is smooth",
                .rate = -2},
-    .matters = layer_knobs::is_cloudy,
-    .why_idle = layer_knobs::kWhyClear};
+    .matters = layer_knobs::is_cloudy};
 
 /// Sizes of the tables of one band, and of the solver that fills them.
 struct LayerTableSizes {

@@ -12,6 +12,9 @@
 namespace opaline::bake {
 namespace {
 
+constexpr double kSeriesTerm = 1.1e-9;    // seconds of a term of a sphere's series, at one angle
+constexpr double kFluxProduct = 4.1e-10;  // and of a multiplication of the adding, for fluxes
+
 constexpr double kBands = 3;
 
 // Doublings from a thin layer to each row, all rows together.
@@ -54,6 +57,11 @@ double count_printed_terms(const RadianceTableSize& size) {
     return kTermsOfConvolution + kTermsOfNode * 2 * cosines * cosines *
                                      (kPlannedAzimuths + static_cast<double>(size.depths)) *
                                      static_cast<double>(size.modes);
+}
+
+// Of its thickness, in all frames.
+double count_texels(const formats::CloudLayer& layer) {
+    return static_cast<double>(layer.columns) * layer.rows * layer.frames;
 }
 
 }  // namespace
@@ -109,26 +117,23 @@ LayerWork count_layer_work(const formats::CloudLayer& layer, const LayerLayout& 
         work.radiance_products =
             kBands * count_radiance_products(sizes.radiance, sizes.radiance_streams);
     }
-    work.bytes = table_bytes(sizes, layout.often) +
-                 2 * static_cast<double>(layer.thickness.size()) +
+    work.bytes = table_bytes(sizes, layout.often) + 2 * count_texels(layer) +
                  4 * static_cast<double>(layer.ground_albedo.size());
     return work;
 }
 
-Work droplet_work(const CostInput& input, const LayerWork& work) {
-    return {0, work.series_terms * input.rates.series_term};
+Work droplet_work(const LayerWork& work) {
+    return {0, work.series_terms * kSeriesTerm};
 }
 
-Work table_work(const CostInput& input, const LayerWork& work) {
-    return {0, work.table_terms * input.rates.series_term +
-                   work.flux_products * input.rates.flux_product +
-                   work.radiance_products * input.rates.radiance_product};
+Work table_work(const LayerWork& work) {
+    return {0, work.table_terms * kSeriesTerm + work.flux_products * kFluxProduct +
+                   work.radiance_products * kRadianceProduct};
 }
 
 double layer_memory(const formats::CloudLayer& layer, const Knobs& knobs) {
     // Tables of a band stand beside the file's, which grow by doubling.
-    return 3 * table_bytes(layer_table_sizes(knobs), true) +
-           (4 + 2 * 2) * static_cast<double>(layer.thickness.size()) +
+    return 3 * table_bytes(layer_table_sizes(knobs), true) + (4 + 2 * 2) * count_texels(layer) +
            (4 + 2 * 4) * static_cast<double>(layer.ground_albedo.size());
 }
 

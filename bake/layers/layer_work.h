@@ -28,8 +28,10 @@ double count_series_terms(const DropletDistribution& droplets, double wavelength
 double count_flux_products(SlabTableSize size, int streams);
 double count_radiance_products(RadianceTableSize size, int streams);
 
-Work droplet_work(const CostInput& input, const LayerWork& work);
-Work table_work(const CostInput& input, const LayerWork& work);
+Work droplet_work(const LayerWork& work);
+Work table_work(const LayerWork& work);
+/// Seconds of a multiplication of the adding of slabs, for radiance.
+inline constexpr double kRadianceProduct = 1.2e-9;
 
 /// Memory of one layer [bytes]: its picture, tables and their copies.
 double layer_memory(const formats::CloudLayer& layer, const Knobs& knobs);

@@ -112,9 +112,9 @@ LayerPlan plan_layers(const formats::Scene& scene, const Knobs& knobs) {
         const formats::CloudLayer& layer = scene.layers[i];
         const Subject subject{Subject::Kind::layer, i, layer.name};
         const LayerBounds bounds = bound_layer(layer);
-        PlanEntry cloud = decide("cloud", "cloud", subject, bounds.cloud, knobs);
-        PlanEntry often = decide("cloud.multiple", "cloud", subject, bounds.often, knobs);
-        PlanEntry ground = decide("radiosity", "radiosity", subject, bounds.radiosity, knobs);
+        PlanEntry cloud = decide(kCloud, kCloud, subject, bounds.cloud, knobs);
+        PlanEntry often = decide(kCloudOften, kCloud, subject, bounds.often, knobs);
+        PlanEntry ground = decide(kRadiosity, kRadiosity, subject, bounds.radiosity, knobs);
         const char* const unseen = "the layer is so thin that it is not seen";
         explain(cloud,
                 layer.paper

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "bake/layers/bake_layers.h"
@@ -8,6 +9,11 @@
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// Effects of cloud layers, as plans, --effects and reports name them.
+inline constexpr std::string_view kCloud = "cloud";
+inline constexpr std::string_view kCloudOften = "cloud.multiple";
+inline constexpr std::string_view kRadiosity = "radiosity";
 
 struct LayerPlan {
     std::vector<PlanEntry> entries;    ///< three a layer, in order; they belong to no rule

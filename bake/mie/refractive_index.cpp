@@ -55,11 +55,6 @@ constexpr double kMetresPerNm = 1e-9;
 
 }  // namespace
 
-WavelengthRange tabulated_wavelengths(Substance substance) {
-    const auto rows = rows_of(substance);
-    return {rows.front().nm * kMetresPerNm, rows.back().nm * kMetresPerNm};
-}
-
 formats::Result<std::complex<double>> refractive_index(Substance substance, double wavelength) {
     const auto rows = rows_of(substance);
     // 550e-9 / 1e-9 is not exactly 550.

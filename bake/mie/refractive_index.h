@@ -12,12 +12,6 @@ enum class Substance {
     ice     ///< -7 degrees C [WarrenBrandt2008]
 };
 
-/// Wavelengths of a substance's table, in a vacuum [m].
-struct WavelengthRange {
-    double least = 0, most = 0;
-};
-WavelengthRange tabulated_wavelengths(Substance substance);
-
 /// Index m_r + i m_i, m_i >= 0, linear between the rows of the published table: every 25 nm from
 /// 300 to 1000 nm for water, every 10 nm from 400 to 800 nm for ice. `wavelength` in metres.
 /// Errors: `usage` outside of the table (NaN included), naming its ends.

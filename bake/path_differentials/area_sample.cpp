@@ -2,15 +2,7 @@
 
 #include <cmath>
 
-#include "bake/path_differentials/axis_frame.h"
-
 namespace opaline::bake {
-
-AreaSample cell_of_area(const glm::dvec3& P, const glm::dvec3& N, double area) {
-    const glm::dmat3 frame = frame_around(N);
-    const double side = std::sqrt(area);
-    return {P, side * frame[0], side * frame[1]};
-}
 
 AreaSample sample_triangle_folded(const std::array<glm::dvec3, 3>& corners, double u, double v) {
     const glm::dvec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];

@@ -17,10 +17,6 @@ inline AreaSample sample_parallelogram(const glm::dvec3& A, const glm::dvec3& e1
     return {A + u * e1 + v * e2, e1, e2};
 }
 
-/// The cell of a receiver at P that stands for an area [m^2] around it: a square in its tangent
-/// plane.
-AreaSample cell_of_area(const glm::dvec3& P, const glm::dvec3& N, double area);
-
 /// Uniform in a triangle: the square is folded along its diagonal. Columns are constant on either
 /// side of it. u, v in [0, 1].
 AreaSample sample_triangle_folded(const std::array<glm::dvec3, 3>& corners, double u, double v);

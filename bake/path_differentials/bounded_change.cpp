@@ -80,11 +80,4 @@ LobeDirection secant_of_lobe(const Lobe& lobe, DiskMap map, double u, double v, 
             .dln_pdf_dv = middle.dln_pdf * disk.dv.dq};
 }
 
-double secant_of_flight(double sigma, double u, double step) {
-    // By what is left to 1, which has digits where u has none.
-    const double left = 1 - u, at_lower = left + std::min(u, step / 2);
-    const double at_upper = std::max(left - step / 2, left / 2);
-    return std::log1p((at_lower - at_upper) / at_upper) / (sigma * step);
-}
-
 }  // namespace opaline::bake

@@ -33,8 +33,4 @@ glm::dvec3 bounded_direction(const glm::dvec3& column, double step);
 LobeDirection secant_of_lobe(const Lobe& lobe, DiskMap map, double u, double v, double step_u,
                              double step_v);
 
-/// dt/du of sample_flight_distance as a secant. The upper end of the cell is at most half way from
-/// u to 1, where t is infinite.
-double secant_of_flight(double sigma, double u, double step);
-
 }  // namespace opaline::bake

@@ -1,8 +1,8 @@
 #include "bake/path_differentials/footprint.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace opaline::bake {
 namespace {
@@ -47,20 +47,6 @@ double polygon_area(std::span<const glm::dvec2> vectors) {
         }
     }
     return area;
-}
-
-std::vector<glm::dvec2> footprint_polygon(std::span<const glm::dvec2> vectors) {
-    const std::vector<glm::dvec2> fan = sorted_fan(vectors);
-    std::vector<glm::dvec2> corners;
-    corners.reserve(2 * fan.size());
-    glm::dvec2 corner = -0.5 * sum_of(fan);
-    for (const double sign : {1.0, -1.0}) {
-        for (const glm::dvec2& v : fan) {
-            corners.push_back(corner);
-            corner += sign * v;
-        }
-    }
-    return corners;
 }
 
 double pair_area(const FootprintPair& pair) {
@@ -134,30 +120,6 @@ PairExtent pair_extent(const FootprintPair& pair) {
     const double major =
         std::sqrt(0.5 * (sum + std::hypot(difference, 2 * glm::dot(pair.A, pair.B))));
     return {major, major > 0 ? pair_area(pair) / major : 0};
-}
-
-double footprint_volume(std::span<const glm::dvec3> vectors) {
-    double volume = 0;
-    for (std::size_t i = 0; i < vectors.size(); ++i) {
-        for (std::size_t j = i + 1; j < vectors.size(); ++j) {
-            const glm::dvec3 normal = glm::cross(vectors[i], vectors[j]);
-            for (std::size_t l = j + 1; l < vectors.size(); ++l) {
-                volume += std::abs(glm::dot(normal, vectors[l]));
-            }
-        }
-    }
-    return volume;
-}
-
-glm::dvec3 rms_extents(std::span<const glm::dvec3> vectors) {
-    Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-    for (const glm::dvec3& v : vectors) {
-        const Eigen::Vector3d column(v.x, v.y, v.z);
-        moments += column * column.transpose();
-    }
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments, Eigen::EigenvaluesOnly);
-    const Eigen::Vector3d extents = solver.eigenvalues().cwiseMax(0).cwiseSqrt();
-    return {extents[2], extents[1], extents[0]};
 }
 
 }  // namespace opaline::bake

@@ -2,7 +2,6 @@
 
 #include <glm/glm.hpp>
 #include <span>
-#include <vector>
 
 namespace opaline::bake {
 
@@ -12,9 +11,6 @@ namespace opaline::bake {
 
 /// Sum over pairs of |v_i x v_j| [m^2]: the exact area.
 double polygon_area(std::span<const glm::dvec2> vectors);
-
-/// Corners of the polygon, counter-clockwise, around 0; two a vector that is not 0.
-std::vector<glm::dvec2> footprint_polygon(std::span<const glm::dvec2> vectors);
 
 /// Two vectors that stand for the footprint.
 struct FootprintPair {
@@ -46,11 +42,5 @@ struct PairExtent {
 };
 
 PairExtent pair_extent(const FootprintPair& pair);
-
-/// In a volume: sum over triples of |det| [m^3].
-double footprint_volume(std::span<const glm::dvec3> vectors);
-
-/// sqrt of the eigenvalues of sum v v^T [m], descending.
-glm::dvec3 rms_extents(std::span<const glm::dvec3> vectors);
 
 }  // namespace opaline::bake

@@ -171,14 +171,6 @@ std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const Differ
     return direction;
 }
 
-bool add_cosine(PathDifferential& path, const glm::dvec3& N, const glm::dvec3& D,
-                const glm::dmat3& dN_dP) {
-    for (DifferentialColumn& column : path.columns()) {
-        column.dlnW += dln_cosine(N, D, dN_dP * column.dP, column.dD);
-    }
-    return glm::dot(N, D) > 0;
-}
-
 SurfaceFootprint surface_footprint(const PathDifferential& path, const DifferentialRules& rules,
                                    const glm::dvec3& N_g, FootprintMode mode) {
     const glm::dmat3 frame = frame_around(N_g);
@@ -192,15 +184,6 @@ SurfaceFootprint surface_footprint(const PathDifferential& path, const Different
     const FootprintPair scaled{scale * pair.A, scale * pair.B};
     return {frame * glm::dvec3(scaled.A, 0), frame * glm::dvec3(scaled.B, 0), pair_area(scaled),
             pair_extent(scaled)};
-}
-
-glm::dvec3 volume_footprint(const PathDifferential& path, const DifferentialRules& rules) {
-    std::array<glm::dvec3, PathDifferential::kMost> vectors{};
-    for (std::size_t i = 0; i < path.count; ++i) {
-        vectors[i] = column_step(path, rules, path.column[i]) * path.column[i].dP;
-    }
-    const glm::dvec3 extents = rms_extents(std::span(vectors).first(path.count));
-    return glm::min(extents, glm::dvec3(rules.extent / 4));
 }
 
 }  // namespace opaline::bake

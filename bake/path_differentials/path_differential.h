@@ -9,10 +9,15 @@
 #include "bake/path_differentials/differential_column.h"
 #include "bake/path_differentials/footprint.h"
 #include "bake/path_differentials/merge_columns.h"
-#include "bake/path_differentials/path_gradient.h"
 #include "bake/path_differentials/visible_normal.h"
 
 namespace opaline::bake {
+
+/// Which contribution a path's gradient is of.
+enum class GradientForm {
+    contribution,  ///< F: factors that importance sampling follows count as well
+    weight         ///< F / p: they cancel
+};
 
 /// What a path's steps and footprints are.
 struct DifferentialRules {
@@ -53,20 +58,6 @@ double column_step(const PathDifferential& path, const DifferentialRules& rules,
 /// To a surface with geometric normal N_g at distance t along D.
 void move_to_surface(PathDifferential& path, const glm::dvec3& D, const glm::dvec3& N_g, double t);
 
-/// To a point in a volume at distance t along D, sampled by one random number. `change(dP, dD)`:
-/// how t moves with an earlier one; `own`: the step of the new one and dt/du.
-struct FlightColumn {
-    double dt_du = 0, step = 1;
-};
-template <class Change>
-void move_in_volume(PathDifferential& path, const glm::dvec3& D, double t, FlightColumn own,
-                    Change&& change) {
-    for (DifferentialColumn& column : path.columns()) {
-        column.dP = column.dP + t * column.dD + change(column.dP, column.dD) * D;
-    }
-    add_variable(path, {own.dt_du * D, glm::dvec3(0), 0, own.step});
-}
-
 /// Mirror and refraction; dN_dP: SurfaceShape's, facing as the event's N does.
 void reflect_columns(PathDifferential& path, const Mirror& event, const glm::dmat3& dN_dP);
 void refract_columns(PathDifferential& path, const DifferentialRules& rules,
@@ -104,14 +95,9 @@ struct FacetEvent {
 };
 
 /// Nothing if the facet reflects totally, or the direction ends on the wrong side: the path's
-/// contribution is 0. Adds no gradient: dln_microfacet is the caller's to add.
+/// contribution is 0. Adds no gradient.
 std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const DifferentialRules& rules,
                                             const FacetEvent& event);
-
-/// Counts the cosine N.D of the current direction as a factor. False if it is not above 0: the
-/// path's contribution is 0, and it ends.
-bool add_cosine(PathDifferential& path, const glm::dvec3& N, const glm::dvec3& D,
-                const glm::dmat3& dN_dP);
 
 /// A footprint on a surface.
 struct SurfaceFootprint {
@@ -131,8 +117,5 @@ inline FootprintPair footprint_in_texture(const SurfaceFootprint& footprint,
                                           const glm::dmat3x2& duv_dP) {
     return {duv_dP * footprint.A, duv_dP * footprint.B};
 }
-
-/// Extents of the footprint in a volume, rms, descending [m].
-glm::dvec3 volume_footprint(const PathDifferential& path, const DifferentialRules& rules);
 
 }  // namespace opaline::bake

@@ -48,10 +48,4 @@ SurfaceShape sphere_shape(const glm::dvec3& center, double radius, const glm::dv
     return {(P - center) / radius, glm::dmat3(1 / radius), glm::dmat3x2(0.0)};
 }
 
-SurfaceShape implicit_shape(const glm::dvec3& gradient, const glm::dmat3& hessian) {
-    const double length = glm::length(gradient);
-    const glm::dvec3 N = gradient / length;
-    return {N, normalized_change(N, length, hessian), glm::dmat3x2(0.0)};
-}
-
 }  // namespace opaline::bake

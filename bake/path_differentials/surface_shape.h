@@ -34,10 +34,6 @@ SurfaceShape interpolated_shape(const TriangleGradients& at, const TriangleAttri
 /// A sphere of radius r around the centre, outward normal: dN = dP / r.
 SurfaceShape sphere_shape(const glm::dvec3& center, double radius, const glm::dvec3& P);
 
-/// The surface f = constant with the gradient and the Hessian of f there:
-/// dN = (I - N N^T) Hess(f) dP / |grad f|.
-SurfaceShape implicit_shape(const glm::dvec3& gradient, const glm::dmat3& hessian);
-
 /// The same from the other side.
 inline SurfaceShape flipped(const SurfaceShape& shape) {
     return {-shape.N, -shape.dN_dP, shape.duv_dP};

@@ -71,14 +71,18 @@ std::optional<SurfaceHit> first_visible_hit(const HitScene& surfaces, glm::vec3 
                                             glm::vec3 direction) {
     const formats::Scene& scene = surfaces.scene();
     RayOrigin from{origin};
-    while (auto hit = surfaces.closest_hit(from, direction, kForever)) {
+    for (std::uint32_t step = 0; step < kMostSteps; ++step) {
+        auto hit = surfaces.closest_hit(from, direction, kForever);
+        if (!hit) {
+            break;
+        }
         const formats::Material& material =
             scene.materials[scene.primitives[hit->primitive].material];
         if (!(glm::dot(direction, hit->flat) > 0) || material.double_sided) {
             hit->distance = glm::dot(hit->position - origin, direction);
             return hit;
         }
-        from = leave_surface(*hit, direction);
+        from = go_straight_on(from, leave_surface(*hit, direction));
     }
     return std::nullopt;
 }

@@ -1,4 +1,4 @@
-#include "bake/path_images/view_ray.h"
+#include "bake/path_images/scattered_light.h"
 
 #include <algorithm>
 #include <cmath>

@@ -11,6 +11,10 @@ namespace {
 
 constexpr std::uint32_t kEncodings = 26;
 
+bool has_truth(const EffectDescriptor& effect) {
+    return effect.truth.work != nullptr;
+}
+
 // One subject's part of some receivers.
 double share_of(const CostedBake& bake, const CostedSubject& subject) {
     const SceneFacts& facts = bake.request.facts;
@@ -43,14 +47,14 @@ double pilot_receivers(const CostedBake& bake) {
 }  // namespace
 
 void bill_pilot_truth(const CostedBake& bake, Bill& bill) {
-    bill.open("pilot truth");
+    bill.open("pilot truth", bake.kind_of("pilot truth", bake.subjects, has_truth));
     const double drawn = pilot_receivers(bake);
     add_truth(bake, drawn, std::min(drawn, double{kMostExpensivePilotReceivers}),
               {bake.request.knobs.numerical_target()}, bill);
 }
 
 void bill_fixed_trials(const CostedBake& bake, Bill& bill) {
-    bill.open("pilot");
+    bill.open("pilot", bake.kind_of("pilot", bake.subjects, has_truth));
     for (const CostedSubject& subject : bake.subjects) {
         if (!subject.depends_on_trials) {
             const double own = share_of(bake, subject) * pilot_receivers(bake);
@@ -64,12 +68,12 @@ void bill_fixed_trials(const CostedBake& bake, Bill& bill) {
 // Receiver by receiver exactly.
 void bill_other_trials(const CostedBake& bake, Bill& bill) {
     constexpr double kRounds = 4;
-    bill.open("pilot");
+    bill.open("pilot", bake.kind_of("pilot", bake.subjects, has_truth));
     const auto& effects = bake.request.effects.effects;
     const double drawn = std::min(pilot_receivers(bake), double{kMostExpensivePilotReceivers});
     Knobs exact = bake.request.knobs;
     exact.exact_rays = true;
-    const CostInput traced{bake.input.rates, exact, bake.input.triangles, bake.input.receivers};
+    const CostInput traced{exact, bake.input.triangles, bake.input.receivers};
     for (const CostedSubject& subject : bake.subjects) {
         if (!subject.depends_on_trials) {
             continue;
@@ -92,7 +96,7 @@ void bill_other_trials(const CostedBake& bake, Bill& bill) {
 }
 
 void bill_self_check(const CostedBake& bake, Bill& bill) {
-    bill.open("self-check");
+    bill.open("self-check", bake.kind_of("self-check", bake.subjects, has_truth));
     const auto drawn = static_cast<double>(count_checked(
         static_cast<std::size_t>(bake.request.facts.receivers), bake.request.knobs.cubemap_size));
     const double expensive = drawn / std::max(1.0, std::ceil(drawn / double{kMostExpensiveChecks}));

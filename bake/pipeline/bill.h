@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "bake/pipeline/cost_model.h"
@@ -13,12 +12,13 @@ namespace opaline::bake {
 /// Adds stages up, and what each decision has in them: fills in a plan's predictions.
 class Bill {
   public:
-    /// `plan` must outlive it; what was predicted before is forgotten. `threads` >= 1.
-    Bill(const Rates& rates, unsigned threads, std::vector<PlanEntry>& plan);
+    /// `rates` and `plan` must outlive it; what was predicted before is forgotten. `threads` >= 1.
+    Bill(const StageRates& rates, unsigned threads, std::vector<PlanEntry>& plan);
 
-    void open(std::string stage) { cost.stages.push_back({std::move(stage), 0}); }
+    /// `kind`: StageCost::kind; empty: the stage's name.
+    void open(std::string stage, std::string kind = {});
     /// Into the stage that was opened last; `payer`: an entry of the plan that is on, or null for
-    /// what all share.
+    /// shared work.
     void add(const Work& work, PlanEntry* payer = nullptr);
     /// Into the file.
     void add_bytes(double bytes, PlanEntry* payer = nullptr);
@@ -26,7 +26,9 @@ class Bill {
     CostPrediction cost;
 
   private:
-    double crowding_, threads_;
+    const StageRates& rates_;
+    double threads_;
+    double factor_ = 1;  // of the stage that was opened last
 };
 
 }  // namespace opaline::bake

@@ -82,7 +82,7 @@ Knobs choose_knobs(const BakeInputs& bake, const Knobs& wanted, const Context& c
     while (next && !context.cancelled()) {
         const Knobs tried = *next;
         project_test_lights(state.lights, tried.cubemap_size);
-        // Samples are not worth taking where the receivers that need none need more texels.
+        // No samples are taken yet where receivers without samples already need more texels.
         const FixedPairs fixed = run_stage(state.log, "pilot", [&](std::uint64_t&) {
             return measure_fixed(scene(), receivers, tried);
         });

@@ -12,7 +12,7 @@ namespace opaline::bake {
 struct AccuracyReport {
     double target = 0;     ///< relative RMS asked for, of model and numerical error together
     double model = 0;      ///< of it the models', measured or estimated before the bake
-    double numerical = 0;  ///< what they leave
+    double numerical = 0;  ///< remaining share of numerical error
     double predicted = 0;  ///< expected numerical error of the chosen knobs, before the bake
     double likely = 0;     ///< `predicted` plus one standard error of the pilot
     bool met = false;      ///< expected to, and measured at receivers and between them
@@ -31,9 +31,9 @@ struct PilotState {
     AccuracyReport& report;
 };
 
-/// The cheapest of the knobs that the user did not fix with which the error meets
-/// knobs.numerical_target(), as far as the pilot can tell. The subjects have been studied; they are
-/// left with the samples of the chosen knobs, the lights with their cube map.
+/// The cheapest knobs whose error, as measured by the pilot, meets knobs.numerical_target(); knobs
+/// of the user are kept. The subjects have been studied; they are left with the samples of the
+/// chosen knobs, the lights with their cube map.
 Knobs choose_knobs(const BakeInputs& bake, const Knobs& knobs, const Context& context,
                    PilotState state);
 

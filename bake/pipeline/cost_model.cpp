@@ -1,6 +1,7 @@
 #include "bake/pipeline/cost_model.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -21,6 +22,12 @@
 namespace opaline::bake {
 namespace {
 
+// Seconds: the rules, shells and the hierarchy of rays, a triangle; a vertex's clearance, and
+// whether it is hidden; all test lights, of which the rest is in the user's cache.
+constexpr double kPlanTriangle = 6.3e-7, kOrientTriangle = 7.6e-7;
+constexpr CostBySize kBuildTriangle{3.2e-7, 3.6e-7}, kPlaceReceiver{5.2e-6, 6.5e-6};
+constexpr double kTestLights = 5e-3;
+
 // Mesh and images, compressed to about half.
 double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
     constexpr double kCompressed = 0.5;
@@ -32,22 +39,27 @@ double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
     return kCompressed * bytes;
 }
 
+bool fills_rows(const EffectDescriptor& effect) {
+    return effect.gather.work != nullptr;
+}
+
 void bill_placing(const CostedBake& bake, bool has_lamps, Bill& bill) {
-    const auto& [effects, scene, facts, knobs, rates, threads, receiver_errors] = bake.request;
+    const formats::Scene& scene = bake.request.scene;
+    const SceneFacts& facts = bake.request.facts;
     double body_triangles = 0;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         body_triangles += scene.materials[m].medium ? facts.material[m].triangles : 0;
     }
     bill.open("bodies");
-    bill.add({body_triangles * rates.orient_triangle, 0});
+    bill.add({body_triangles * kOrientTriangle, 0});
     bill.open("plan");
-    bill.add({facts.triangles * rates.plan_triangle, 0});
+    bill.add({facts.triangles * kPlanTriangle, 0});
     if (bake.traces_rays) {
         bill.open("hierarchy");
-        bill.add({0, facts.triangles * rates.build_triangle.at(facts.triangles)});
+        bill.add({0, facts.triangles * kBuildTriangle.at(facts.triangles)});
     }
     bill.open("receivers");
-    bill.add({facts.receivers * rates.place_receiver.at(facts.triangles), 0});
+    bill.add({facts.receivers * kPlaceReceiver.at(facts.triangles), 0});
     std::vector<RowLayout> layouts(scene.materials.size());
     for (const CostedSubject& subject : bake.subjects) {
         layouts[subject.material] = subject.layout;
@@ -57,7 +69,7 @@ void bill_placing(const CostedBake& bake, bool has_lamps, Bill& bill) {
     }
     if (facts.receivers > 0) {
         bill.open("test lights");
-        bill.add({0, rates.test_lights});
+        bill.add({0, kTestLights});
     }
 }
 
@@ -76,8 +88,9 @@ void bill_step(const CostedBake& bake, Step step, Bill& bill) {
                 continue;
             }
             if (own.by_subject || !is_open) {
-                bill.open(std::string(own.stage) +
-                          (own.by_subject ? " material '" + material.name + "'" : ""));
+                const std::string stage(own.stage);
+                bill.open(stage + (own.by_subject ? " material '" + material.name + "'" : ""),
+                          subject.layout.all_orders ? stage + " by walks" : stage);
                 is_open = true;
             }
             bill.add(own.work(bake.cost_of(
@@ -99,7 +112,8 @@ void bill_shared_light(const CostedBake& bake, Bill& bill) {
         }
         PlanEntry* const payer = bake.payer(*concerned, e);
         const LightWork light = effects[e].light_work(bake.input);
-        bill.open(std::string(effects[e].name));
+        const std::string name(effects[e].name);
+        bill.open(name, bake.kind_of(name, bake.subjects, fills_rows));
         bill.add(light.work, payer);
         const Knobs coarse = coarse_knobs(request.effects, request.knobs, light.cubemap_size);
         for (const CostedSubject& subject : bake.subjects) {
@@ -136,13 +150,15 @@ MemoryCounts count_planned_memory(const CostedBake& bake) {
 
 void bill_row_stages(const CostedBake& bake, Bill& bill) {
     for (const formats::Primitive& p : bake.request.scene.primitives) {
-        bill.open("rows of '" + p.name + "'");
-        for (const CostedSubject& subject : bake.subjects) {
-            if (subject.material == p.material) {
-                const auto receivers = static_cast<double>(p.position.size());
-                bill_rows(bake, subject, receivers, bill);
-                bill_encoding(bake, subject, receivers, bill);
-            }
+        const auto subject = std::ranges::find(bake.subjects, p.material, &CostedSubject::material);
+        const auto own = std::span(bake.subjects)
+                             .subspan(static_cast<std::size_t>(subject - bake.subjects.begin()),
+                                      subject == bake.subjects.end() ? 0 : 1);
+        bill.open("rows of '" + p.name + "'", bake.kind_of("rows", own, fills_rows));
+        if (!own.empty()) {
+            const auto receivers = static_cast<double>(p.position.size());
+            bill_rows(bake, *subject, receivers, bill);
+            bill_encoding(bake, *subject, receivers, bill);
         }
     }
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/plan/effect.h"
-#include "bake/plan/rates.h"
+#include "bake/plan/stage_rates.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -14,7 +14,10 @@ namespace opaline::bake {
 /// One stage of a bake, named as in run_bake's report.
 struct StageCost {
     std::string name;
-    double seconds = 0;
+    /// What it is alike in all scenes that have it: rates are learnt by it.
+    std::string kind;
+    double work = 0;     ///< [s] of all threads together, of counts and constants alone
+    double seconds = 0;  ///< as the clock on the wall shows them on this machine
 };
 
 /// The predicted cost of a bake.
@@ -37,7 +40,7 @@ struct CostRequest {
     const formats::Scene& scene;
     const SceneFacts& facts;
     const Knobs& knobs;
-    const Rates& rates;
+    const StageRates& rates;
     unsigned threads = 1;          ///< >= 1
     bool receiver_errors = false;  ///< BakeExtras::receiver_errors: bytes of the file alone
 };
@@ -51,8 +54,8 @@ struct CostRequest {
 /// present knobs. The pilot may choose others.
 ///
 /// Counts follow from the numbers of triangles, receivers, samples and texels, and from the ratio
-/// of a medium's profile width to the sample spacing. The clutter of a scene is not known: rates
-/// are those of a dented ball, and scenes differ from it by a factor of up to 1.4.
+/// of a medium's profile width to the sample spacing. The clutter of a scene is not known:
+/// constants are those of a dented ball, and rates tell what earlier bakes took over them.
 ///
 /// Volumes cost what the layouts of plan_volumes ask for. `volume_plan`: their entries and those of
 /// layers, which get predictions of their own; empty: the costs count as shared, and layers are

@@ -60,12 +60,24 @@ PlanEntry* CostedBake::payer(const CostedSubject& subject, std::size_t effect) c
     return first;
 }
 
+std::string CostedBake::kind_of(
+    std::string stage, std::span<const CostedSubject> some,
+    const std::function<bool(const EffectDescriptor&)>& takes_part) const {
+    const auto any = [&](auto&& holds) -> bool { return std::ranges::any_of(some, holds); };
+    const auto& effects = request.effects.effects;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        if (takes_part(effects[e]) &&
+            any([e](const CostedSubject& s) -> bool { return s.acts[e]; })) {
+            stage += " + " + std::string(effects[e].name);
+        }
+    }
+    return any([](const CostedSubject& s) { return s.layout.all_orders; }) ? stage + " by walks"
+                                                                           : stage;
+}
+
 CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& plan) {
     CostedBake bake{
-        request,
-        {request.rates, request.knobs, request.facts.triangles, request.facts.receivers},
-        {},
-        false};
+        request, {request.knobs, request.facts.triangles, request.facts.receivers}, {}, false};
     std::vector<RowLayout> layouts;
     for (const Subject& subject : list_subjects(request.scene, request.facts)) {
         CostedSubject own;
@@ -93,7 +105,7 @@ Work work_of_points(const CostedBake& bake, const CostedSubject& subject, const 
                     double points, const std::function<bool(std::size_t effect)>& counts) {
     const CostRequest& request = bake.request;
     const auto& effects = request.effects.effects;
-    const CostInput input{request.rates, knobs, request.facts.triangles, request.facts.receivers};
+    const CostInput input{knobs, request.facts.triangles, request.facts.receivers};
     const SubjectCost cost{input,
                            request.scene.materials[subject.material],
                            request.facts.material[subject.material],

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "bake/pipeline/bill.h"
@@ -30,6 +31,10 @@ struct CostedBake {
     /// Who pays for an effect's work on a subject: the decision that turned the effect on, or where
     /// there is none (effects/local) the first one that fills rows.
     PlanEntry* payer(const CostedSubject& subject, std::size_t effect) const;
+    /// StageCost::kind of a stage in which effects of that nature do their part for these subjects:
+    /// other effects take other time.
+    std::string kind_of(std::string stage, std::span<const CostedSubject> some,
+                        const std::function<bool(const EffectDescriptor&)>& takes_part) const;
 };
 CostedBake make_costed_bake(const CostRequest& request, std::vector<PlanEntry>& plan);
 

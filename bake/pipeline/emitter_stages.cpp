@@ -14,6 +14,9 @@
 #include "bake/emitters/media_patches.h"
 #include "bake/pipeline/lit_media.h"
 #include "bake/pipeline/shared_light.h"
+#include "bake/plan/walk_work.h"
+#include "bake/volumes/volume_effects.h"
+#include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 namespace {
@@ -52,10 +55,11 @@ void warn_of_unlit(const formats::Scene& scene, bool has_dark, bool of_volumes,
     if (!scene.volumes.empty() && !of_volumes) unlit += unlit.empty() ? "volumes" : ", volumes";
     if (!scene.layers.empty()) unlit += unlit.empty() ? "cloud layers" : ", cloud layers";
     if (unlit.empty()) return;
-    warnings.push_back(formats::make_warning(
-        "", "emitters", "their light does not reach " + unlit + ", which stay dark under it",
-        has_dark ? "let --effects have light scattered many times"
-                 : "nothing needs to be done where that is not seen"));
+    warnings.push_back(
+        formats::make_warning("", std::string(kEmitters),
+                              "their light does not reach " + unlit + ", which stay dark under it",
+                              has_dark ? "let --effects have light scattered many times"
+                                       : "nothing needs to be done where that is not seen"));
 }
 
 void warn_of_immersed(std::span<const std::string> immersed,
@@ -143,15 +147,15 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
     }
     result.asset.emitters = std::move(baked->emitters);
     if (baked->error.receivers_checked > 0) {
-        result.error.by_effect.push_back({"emitters", baked->error.rms_relative});
+        result.error.by_effect.push_back({std::string(kEmitters), baked->error.rms_relative});
     } else {
-        result.error.not_measured.emplace_back("emitters");
+        result.error.not_measured.emplace_back(kEmitters);
     }
     const double limit = result.knobs.error_target > 0 ? result.knobs.error_target
                                                        : acceptable_error(result.knobs.quality);
     if (baked->error.rms_relative > limit) {
         result.warnings.push_back(formats::make_warning(
-            "", "emitters",
+            "", std::string(kEmitters),
             "their light errs by " + error_percent(baked->error.rms_relative) + ", more than " +
                 error_percent(limit),
             "give more --emitter-rays and --emitter-particles"));
@@ -177,7 +181,7 @@ void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
             bill.add(each, lamp);
         }
     };
-    const double ray = kIncoherent * request.rates.coherent_ray.at(request.facts.triangles);
+    const double ray = kIncoherent * kCoherentRay.at(request.facts.triangles);
     const double rays = request.knobs[kEmitterRays] * request.facts.receivers;
     const double particles = kFlights * request.knobs[kEmitterParticles] * ray;
     for_each("particles of emitters", {0, particles});
@@ -190,14 +194,14 @@ void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
     const std::size_t first_volume = list_lamps(request.scene).size();
     for (PlanEntry* lamp : lamps) {
         if (lamp->subject.index >= first_volume) {
-            bill.add({0, rays / 4 * glow_steps(request.scene) * request.rates.density_step}, lamp);
+            bill.add({0, rays / 4 * glow_steps(request.scene) * kDensityStep}, lamp);
         }
     }
     bill.add({0, rays * ray});  // to surfaces that reflect, for all
     bill.open("self-check of emitters");
     if (media) {
         bill.open("self-check of media lit by emitters");
-        bill.add({0, kLitMediaEvents * request.rates.body_event.at(request.facts.triangles)});
+        bill.add({0, kLitMediaEvents * kBodyEvent.at(request.facts.triangles)});
     }
     for (PlanEntry* lamp : lamps) {
         bill.add_bytes(6 * request.facts.receivers, lamp);

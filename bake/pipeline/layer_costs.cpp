@@ -5,6 +5,7 @@
 
 #include "bake/layers/layer_error.h"
 #include "bake/layers/layer_work.h"
+#include "bake/layers/plan_layers.h"
 
 namespace opaline::bake {
 namespace {
@@ -20,11 +21,9 @@ PlanEntry* find_layer_entry(std::span<PlanEntry> plan, std::uint32_t layer, std:
 }  // namespace
 
 void bill_layers(const CostRequest& request, std::span<PlanEntry> plan, Bill& bill) {
-    const CostInput input{request.rates, request.knobs, request.facts.triangles,
-                          request.facts.receivers};
     for (std::uint32_t i = 0; i < request.scene.layers.size(); ++i) {
-        PlanEntry* const cloud = find_layer_entry(plan, i, "cloud");
-        PlanEntry* const often = find_layer_entry(plan, i, "cloud.multiple");
+        PlanEntry* const cloud = find_layer_entry(plan, i, kCloud);
+        PlanEntry* const often = find_layer_entry(plan, i, kCloudOften);
         if (cloud != nullptr && !cloud->on) {
             continue;
         }
@@ -33,14 +32,14 @@ void bill_layers(const CostRequest& request, std::span<PlanEntry> plan, Bill& bi
         const bool has_often = often == nullptr || often->on;
         const LayerWork all = count_layer_work(layer, {i, true, has_often, false}, request.knobs);
         bill.open("droplets of clouds");
-        bill.add(droplet_work(input, once), cloud);
+        bill.add(droplet_work(once), cloud);
         bill.open("tables of clouds");
-        bill.add(table_work(input, once), cloud);
-        bill.add(table_work(input, all) - table_work(input, once), often);
+        bill.add(table_work(once), cloud);
+        bill.add(table_work(all) - table_work(once), often);
         bill.add_bytes(once.bytes, cloud);
         bill.add_bytes(all.bytes - once.bytes, often);
         bill.open("self-check of clouds");
-        bill.add({0, check_products() * request.rates.radiance_product});
+        bill.add({0, check_products() * kRadianceProduct});
     }
 }
 

@@ -4,13 +4,14 @@
 #include <utility>
 
 #include "bake/accuracy/error_warnings.h"
+#include "bake/layers/plan_layers.h"
 #include "bake/mie/number_text.h"
 
 namespace opaline::bake {
 namespace {
 
 void state_error(const LayerErrorReport& found, ErrorReport& error) {
-    error.by_effect.push_back({"cloud", found.rms_relative});
+    error.by_effect.push_back({std::string(kCloud), found.rms_relative});
     if (error.receivers_checked > 0) {
         return;
     }

@@ -144,7 +144,7 @@ std::vector<RowLayout> final_layouts(const BakeInputs& bake,
     return layouts;
 }
 
-// The plan, now that studies have found what rules could not know.
+// The plan after the studies: rules decide again with their findings.
 std::vector<PlanEntry> amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects,
                                   const Knobs& knobs, const Context& context) {
     return plan_bake(bake.effects, bake.scene, bake.facts, knobs, [&](PlanEntry& entry) {

@@ -25,11 +25,11 @@ struct MemoryCounts {
 /// Of a scene of which only the size is known: everything counts as opaque, so that the prediction
 /// is a lower bound.
 MemoryCounts count_memory(const formats::SceneCounts& scene);
-/// Of a scene that is there; what depends on the plan counts as left out.
+/// Of a loaded scene; parts that depend on the plan are left out.
 MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scene,
                           const Knobs& knobs);
 
-/// Peak of a whole bake, by what takes it [bytes].
+/// Peak memory of a whole bake by part [bytes].
 struct MemoryPrediction {
     struct Part {
         std::string name;

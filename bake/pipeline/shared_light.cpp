@@ -11,7 +11,7 @@ namespace {
 
 using PointRows = std::vector<std::vector<float>>;
 
-// Calls make() while of the effects those that let light cross a medium act alone, or all others.
+// Calls make() while only the effects that let light cross a medium act, or only all others.
 template <class Make>
 PointRows with_some(const EffectTable& effects, SubjectState& subject, bool crosses, Make&& make) {
     std::vector<std::uint8_t> acted;

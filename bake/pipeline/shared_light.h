@@ -9,15 +9,15 @@
 
 namespace opaline::bake {
 
-/// The knobs at which media count there: those of the coarsest preset, choices as they are.
+/// The knobs of media there: those of the coarsest preset, with the choices of `knobs`.
 Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size);
 
-/// Light that an effect makes arrive at all surfaces, or null: none that acts makes any. `bake`:
-/// without it. `layouts`: by material, with their tints. The subjects have been studied; they are
-/// left without samples.
+/// Light that an effect sends to all surfaces, or null if no acting effect does. `bake`: without
+/// it. `layouts`: by material, with their tints. The subjects have been studied; they are left
+/// without samples.
 ///
-/// Media inside count as they are at the knobs of the preset `draft` and the smallest cube map:
-/// what leaves them is smooth where it arrives.
+/// Media are evaluated at the knobs of the preset `draft` and the smallest cube map, because their
+/// light is smooth where it arrives.
 std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knobs& knobs,
                                               const Context& context,
                                               std::span<const RowLayout> layouts,

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "bake/scene/emission.h"
-#include "formats/opal/terms.h"
 
 namespace opaline::bake {
 namespace {
@@ -72,13 +71,6 @@ void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warni
     }
 }
 
-void warn_of_idle(std::string_view option, std::string_view why,
-                  std::vector<Diagnostic>& warnings) {
-    warnings.push_back(make_warning("", std::string(option),
-                                    "does nothing here: " + std::string(why),
-                                    "`opaline plan` says what is simulated"));
-}
-
 // Options of stages that do not run.
 void describe_options(const DecidedBake& decided, const BakeOptions& options,
                       std::vector<Diagnostic>& warnings) {
@@ -92,21 +84,26 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
         }
         return knob.matters({}, decided.volume_plan);
     };
+    std::string idle;
+    const auto list = [&](std::string_view option) {
+        idle.append(idle.empty() ? "" : ", ").append(option);
+    };
     for (const auto& [knob, value] : options.given.values) {
         // The least that an `auto` knob may be is what idle subjects get anyway.
         const bool is_least = knob->zero_is_auto && value <= knob->lowest;
         if (knob->matters != nullptr && !is_least && !matters(*knob)) {
-            warn_of_idle(knob->option, knob->why_idle, warnings);
+            list(knob->option);
         }
     }
     const auto has_both = [](const RowLayout& l) {
         return l.translucent && l.constant && l.harmonics > 0;
     };
     if (options.separate_terms && std::none_of(layouts.begin(), layouts.end(), has_both)) {
-        warn_of_idle("--separate-terms",
-                     "no material has both " +
-                         formats::term_names(formats::TermSet::separable, " and ") + " scattering",
-                     warnings);
+        list("--separate-terms");
+    }
+    if (!idle.empty()) {
+        warnings.push_back(make_warning("", "", "not used here: " + idle,
+                                        "`opaline plan` says what is simulated"));
     }
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/pipeline/volume_stages.h"
+#include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_parts.h"
 
@@ -19,9 +20,9 @@ PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string
     return found == plan.end() ? nullptr : &*found;
 }
 
-// Walks of a volume that gather light of volumes: they fly as the others do, and look along their
-// flights for light: in half of the volume as a guess, three channels at twice the time of one.
-Work glow_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout) {
+// Walks of a volume that gather light of volumes: they fly as the others do, and sum emission along
+// their flights: through half of the volume as a guess, three channels at twice the time of one.
+Work glow_work(const VolumeWork& work, const VolumeLayout& layout) {
     constexpr double kShortWalk = 2, kGlowing = 0.5 * 2;
     if (!(work.nodes > 0) || layout.glow_walks == 0) {
         return {};
@@ -29,9 +30,8 @@ Work glow_work(const CostInput& input, const VolumeWork& work, const VolumeLayou
     const double flights =
         work.walks > 0 && work.flights > 0 ? work.flights / (work.nodes * work.walks) : kShortWalk;
     const double steps = work.depth_steps / (work.nodes * work.cells);
-    return {
-        0, work.nodes * layout.glow_walks * work.tracks *
-               (flights * input.rates.volume_flight + kGlowing * steps * input.rates.density_step)};
+    return {0, work.nodes * layout.glow_walks * work.tracks *
+                   (flights * kVolumeFlight + kGlowing * steps * kDensityStep)};
 }
 
 // Three halves a term, four bytes a voxel of the bricks that glow: half of them as a guess.
@@ -59,15 +59,14 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     if (volumes.empty()) {
         return;
     }
-    const CostInput input{request.rates, request.knobs, request.facts.triangles,
-                          request.facts.receivers};
+    const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
     const auto for_each = [&](std::string_view name, auto&& visit) {
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
             visit(volumes.works[i], payer_of(volume_plan, volumes.layouts[i].whole, name));
         }
     };
     bill.open("light in volumes");
-    for_each("volume-single", [&](const VolumeWork& work, PlanEntry* payer) {
+    for_each(kOnceInVolumes, [&](const VolumeWork& work, PlanEntry* payer) {
         bill.add(attenuation_work(input, work), payer);
         bill.add_bytes(volume_density_bytes(work));
         bill.add_bytes(attenuated_row_bytes(work, request.knobs), payer);
@@ -76,14 +75,14 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         bill.open("surfaces that volumes see");
         const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
         bill.add(seen_surfaces_work(input, volumes.works, request.facts.receivers, row_count),
-                 payer_of(volume_plan, first->whole, "surface-volume"));
+                 payer_of(volume_plan, first->whole, kSurfacesToVolumes));
     }
     bill.open(scattering_stage(volumes.layouts));
     for (std::size_t i = 0; i < volumes.works.size(); ++i) {
         // Walks and rows that light of the sky does not need are those of surfaces.
         const VolumeLayout& layout = volumes.layouts[i];
         PlanEntry* const payer = payer_of(volume_plan, layout.whole,
-                                          layout.sees_sky ? "volume-multiple" : "surface-volume");
+                                          layout.sees_sky ? kOftenInVolumes : kSurfacesToVolumes);
         bill.add(scattering_work(input, volumes.works[i]), payer);
         bill.add_bytes(scattered_row_bytes(volumes.works[i], request.knobs), payer);
     }
@@ -96,20 +95,20 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
                 work.nodes * work.bands * request.knobs[kVolumeCoefficients] * (check.probes + 1);
         }
         bill.open("self-check of volumes");
-        bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision +
-                         entries * request.rates.gather_entry});
+        bill.add(
+            {0, static_cast<double>(check.max_events) * kTracedCollision + entries * kGatherEntry});
     }
     if (count_glowing(volumes.layouts) > 0) {
         bill.open("light of volumes");
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].whole, "emitters");
-            bill.add(glow_work(input, volumes.works[i], volumes.layouts[i]), payer);
+            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].whole, kEmitters);
+            bill.add(glow_work(volumes.works[i], volumes.layouts[i]), payer);
             bill.add_bytes(glow_bytes(volumes.works[i], volumes.layouts[i]), payer);
         }
         bill.open("self-check of light of volumes");
         const VolumeCheckOptions check =
             volume_check_effort(volumes.works, volumes.layouts, request.knobs);
-        bill.add({0, static_cast<double>(check.max_events) * request.rates.traced_collision});
+        bill.add({0, static_cast<double>(check.max_events) * kTracedCollision});
     }
     if (request.facts.receivers > 0) {
         bill.open("shadows of volumes");
@@ -117,7 +116,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
             const VolumeLayout& layout = volumes.layouts[i];
             bill.add(sent_light_work(input, volumes.works[i], layout, request.facts.receivers),
-                     payer_of(volume_plan, layout.whole, "volume-surface"));
+                     payer_of(volume_plan, layout.whole, kVolumesToSurfaces));
         }
     }
 }

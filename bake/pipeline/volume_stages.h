@@ -30,8 +30,8 @@ VolumeCheckOptions volume_check_effort(std::span<const VolumeWork> works,
 /// their plan goes by.
 Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quality);
 
-/// Adds a file's volumes to `result`, lit by the sky and by the surfaces that are there, measures
-/// them, and takes what they dim from the light of surfaces, which receive what they scatter. With
+/// Adds a file's volumes to `result`, lit by the sky and by the file's surfaces, measures them,
+/// dims the rows of surfaces by them, and adds the light that they scatter to surfaces. With
 /// Knobs::error_target they are baked in quality after quality, `draft` first, until the measured
 /// error is below the target or falls by less than a tenth; the best bake so far is kept, and
 /// `result.knobs` has its values. Errors: as bake_volumes and check_volumes; interrupted.

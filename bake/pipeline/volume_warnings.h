@@ -9,8 +9,8 @@
 
 namespace opaline::bake {
 
-/// Warns where volumes err by more than the target, or without one surely by more than passes
-/// unnoticed (acceptable_error).
+/// Warns where the error of volumes exceeds the target or, without one, the lower end of its
+/// interval exceeds acceptable_error.
 void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>& error,
                      std::vector<formats::Diagnostic>& warnings);
 

@@ -14,7 +14,7 @@
 
 namespace opaline::bake {
 
-/// Identifies an effect; the enumerators stand beside the table (effects/effects.h).
+/// Identifies an effect; the enumerators are defined beside the table (effects/effects.h).
 enum class Effect : std::uint8_t;
 
 /// One decision: an effect, or a part of one, for a subject.
@@ -34,7 +34,7 @@ struct PlanEntry {
     std::string_view choice{};  ///< on or off: the way it takes of several; empty: none or unknown
     std::string reason;         ///< the rule in words
     double bound = 0;           ///< largest radiance it can contribute under `white`
-    double model_error = 0;     ///< relative RMS that it errs by as a model, as far as is known
+    double model_error = 0;     ///< relative RMS error of the model; 0 where unknown
     std::uint32_t terms = 0;    ///< of rules that choose a number of rows: that number; otherwise 0
     std::uint32_t least_terms = 1;      ///< that number if the rule were on
     double predicted_seconds = 0;       ///< filled in by predict_costs (cost_model.h)
@@ -43,7 +43,7 @@ struct PlanEntry {
     std::uint64_t saved_bytes = 0;      ///< the same; of the rows in the file
 };
 
-/// What is known of a decision that its rule did not know; null: nothing.
+/// Findings of a decision's study; null: none.
 using AmendEntry = std::function<void(PlanEntry& entry)>;
 
 /// Decides what to simulate, from the scene alone: traces nothing. Subject by subject, and for each
@@ -53,8 +53,7 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
                                  const SceneFacts& facts, const Knobs& knobs,
                                  const AmendEntry& amend = {});
 
-/// Relative RMS that the models of a plan err by, as far as is known: of the subject where they err
-/// most.
+/// Largest known relative RMS error of a plan's models over its subjects.
 double find_model_error(std::span<const PlanEntry> plan);
 
 /// What the plan's effects chose, each once, in the order of the plan: "dipole, walks".
@@ -67,7 +66,7 @@ std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts
 const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view name,
                             std::uint32_t material);
 
-/// The entries of one material; they stand together.
+/// The entries of one material, which are consecutive.
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material);
 
 }  // namespace opaline::bake

@@ -37,6 +37,9 @@ struct TruthReceiver {
     const BodyPoint& inside;
     std::uint32_t key = 0;  ///< of its random numbers: the receiver's running number
     bool behind = false;    ///< seen from behind: of thin-walled surfaces alone
+    /// Of media: unit, inside, toward the eye; 0: along the normal, or, where rows are the same for
+    /// all views, the mean over these.
+    glm::vec3 seen{0};
 };
 
 }  // namespace opaline::bake

@@ -23,9 +23,7 @@
 
 namespace opaline::bake {
 
-struct CalibrationBench;  // calibration/bench
-
-/// What an effect keeps between its functions: only the effect knows what it is.
+/// State that an effect keeps between its functions; its type is private to the effect.
 struct Prepared {
     virtual ~Prepared() = default;
 };
@@ -58,7 +56,7 @@ struct EffectInputs {
     const EffectState& own;               ///< the effect's
 
     const formats::Medium& medium() const { return *bake.scene.materials[material].medium; }
-    /// What stands before the light of the material's receivers; empty where nothing does.
+    /// Occluders of the material's receivers; empty where nothing blocks their light.
     const RayScene& outside() const { return layout.occluded ? bake.rays : bake.sky; }
     /// OtherLight::make_truth of light(); empty where there is none.
     OtherLight::TrueIrradiance true_light(std::span<const TestLight> lights) const {
@@ -77,7 +75,7 @@ struct EffectInputs {
 /// A step that runs once for a subject, before its rows. `run` null: the effect has none.
 struct PreparationStep {
     std::string_view stage{};  ///< of the report, with a subject's name where `by_subject`; empty:
-                               ///< it takes no time worth a stage
+                               ///< its time is negligible
     bool by_subject = false;
     bool (*applies)(const formats::Material& material, const RowLayout& layout) = nullptr;
     PreparedPtr (*run)(const EffectInputs& inputs, std::uint64_t& rays) = nullptr;
@@ -99,7 +97,7 @@ struct GatherStep {
     Work (*work)(const SubjectCost& cost) = nullptr;
 };
 
-/// What a truth is worth: how closely a receiver is looked at.
+/// Effort of a truth at a receiver.
 struct TruthEffort {
     double target = 0;  ///< of a pilot: relative RMS asked for; 0: of a self-check
 };
@@ -122,7 +120,7 @@ struct CrossingViews {
     /// Weights: share of the radiosity of what is seen that is radiosity of the point, but for the
     /// base colour. No factors.
     std::vector<SurfaceView> views;
-    double solid_angle = 0;  ///< [sr] that each stands for
+    double solid_angle = 0;  ///< [sr] of each
 };
 /// Counts `rays`. Any thread.
 using LookThrough = std::function<CrossingViews(const BodyPoint& point, std::uint64_t& rays)>;
@@ -153,24 +151,24 @@ struct LightInputs {
     std::function<LookThrough(std::uint32_t material)> look_through{};
 };
 
-/// All that the rest of the baker knows of an effect. Plan, cost model, pilot, self-check, sweep,
-/// report and command line iterate the table of these and name no effect.
+/// The interface of an effect. Plan, cost model, pilot, self-check, sweep, report and command line
+/// iterate the table of these and name no effect.
 struct EffectDescriptor {
     Effect id{};
-    std::string_view name{};    ///< for --effects and reports; that of its folder
-    std::string_view help{};    ///< what it simulates, in a line; empty: not for --effects
-    bool inside_media = false;  ///< it needs what is inside a medium: the medium is no surface then
+    std::string_view name{};  ///< for --effects and reports; that of its folder
+    std::string_view help{};  ///< the light that it simulates, in a line; empty: not for --effects
+    bool inside_media = false;              ///< it needs the inside of a medium
     std::span<const DecisionRule> rules{};  ///< the first one decides the effect itself
-    /// Whether it acts on a subject, where that is not what its first rule says.
+    /// Whether it acts on a subject, where its first rule does not decide that.
     bool (*acts)(const RowLayout& layout) = nullptr;
     std::span<const KnobSpec* const> knobs{};
     std::span<const PilotLadder> pilot{};
     /// The knobs of its samples, refined together by the pilot's rounds; null: it has none.
     bool (*refine_samples)(Knobs& knobs) = nullptr;
 
-    PreparationStep study{};    ///< what depends on no knob
-    PreparationStep samples{};  ///< what a pilot's knobs of rows do not change
-    PreparationStep prepare{};  ///< what is left once every knob has its value
+    PreparationStep study{};    ///< depends on no knob
+    PreparationStep samples{};  ///< independent of the pilot's knobs of rows
+    PreparationStep prepare{};  ///< after every knob has its value
     GatherStep gather{};
     TruthStep truth{};
     /// Finds the light that the effect makes arrive at surfaces (BakeInputs::light), once for the
@@ -184,12 +182,8 @@ struct EffectDescriptor {
     bool concerns_volumes = false;   ///< it is about volumes instead of materials
     bool concerns_layers = false;    ///< it is about cloud layers instead of materials
     bool concerns_emitters = false;  ///< it is about light that the scene itself sends out
-    /// Light of the reference that files with it hold, beside what all files are compared with.
+    /// Light of the reference that files with it hold, beside the light of all files.
     formats::TermSet held_light = formats::TermSet::none;
-
-    /// Measures the seconds of its units of work on one thread, of few or of many triangles
-    /// (`bench`). Null: other rooms measure them.
-    void (*calibrate)(const CalibrationBench& bench, Rates& rates) = nullptr;
 
     /// Memory: of the samples of one subject at most [bytes]; rows of a receiver of a medium.
     double (*sample_bytes)(const Knobs& knobs) = nullptr;
@@ -208,7 +202,7 @@ struct EffectDescriptor {
     bool (*takes_even_media)(const Knobs& knobs) = nullptr;
     /// Completes one of its decisions once it has studied the subject; rules after it follow.
     void (*amend)(const EffectInputs& inputs, PlanEntry& entry) = nullptr;
-    /// Warnings about a decision that knobs contradict; and about what the model leaves out.
+    /// Warnings about decisions that knobs contradict, and about light that the model leaves out.
     void (*warn_of_plan)(const PlanInput& input, const PlanEntry& entry,
                          std::vector<formats::Diagnostic>& warnings) = nullptr;
     void (*warn_of_model)(const EffectInputs& inputs,

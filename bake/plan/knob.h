@@ -50,9 +50,8 @@ struct KnobSpec {
 
     KnobTheory theory{};
 
-    /// Whether a subject of these rows and decisions has use for it, and why not, in words.
+    /// Whether a subject of these rows and decisions uses it.
     bool (*matters)(const RowLayout& layout, std::span<const PlanEntry> decisions) = nullptr;
-    std::string_view why_idle{};
 };
 
 /// What a pilot tries for one effect: some of its knobs together, from coarse to fine.

@@ -9,7 +9,7 @@
 
 namespace opaline::bake {
 
-/// A decision that leaves out less radiance than this under `white` is worth it.
+/// Decisions may leave out less radiance than this under `white`.
 inline constexpr double kLeastBound = 1.0 / 512;
 
 /// What a rule decides from.
@@ -23,8 +23,8 @@ struct PlanInput {
     std::span<const PlanEntry> earlier{};  ///< decisions on this subject so far
 };
 
-/// Whether an effect of this bound is worth simulating. `forced`: it is not, but
-/// Knobs::simulate_all asks for it. An unknown bound (NaN) is worth it.
+/// Whether an effect of this bound is simulated. `forced`: its bound is too small, but
+/// Knobs::simulate_all asks for it. Effects of an unknown bound (NaN) are simulated.
 bool is_worth(double bound, const PlanInput& input, bool& forced);
 
 /// True if the user named the effect; true if the user did not exclude it.

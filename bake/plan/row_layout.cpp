@@ -16,6 +16,7 @@ RowLayout layout_material(const EffectTable& effects, const formats::Material& m
                           std::span<const PlanEntry> decisions, const Knobs& knobs) {
     RowLayout layout;
     layout.translucent = material.medium.has_value();
+    layout.sheet = material.sheet.has_value();
     for (const PlanEntry& entry : decisions) {
         rule_of(effects, entry).lay_out(entry, layout);
     }

@@ -10,24 +10,26 @@
 
 namespace opaline::bake {
 
-/// What stands in the rows of a material's receivers. Every rule of the plan says what its decision
-/// means here (DecisionRule::lay_out); nothing else about a decision reaches the stages.
+/// Content of the rows of a material's receivers. Every rule of the plan writes its decision here
+/// (DecisionRule::lay_out); nothing else about a decision reaches the stages.
 struct RowLayout {
     bool translucent = false;  ///< seen through the boundary of a medium; otherwise diffuse, grey
     bool occluded = false;     ///< visibility is traced
     bool constant = false;     ///< some effect fills a row that is the same for all views
     std::uint32_t harmonics = 0;  ///< rows that are seen through spherical harmonics: 0, 1, 4 … 25
-    std::uint32_t view_harmonics = 0;  ///< of these, filled by what `constant` says: 0, 4 or 9
+    std::uint32_t view_harmonics = 0;  ///< of these, filled with the light of `constant`: 0, 4 or 9
     bool all_orders = false;           ///< `constant` holds light of all orders of scattering
     bool layered = false;              ///< light goes through other media inside its own
-    bool at_entry = false;             ///< light leaves the medium where it entered
-    bool separate = false;             ///< the row for all views stands apart from the harmonics
-    bool sheet = false;                ///< a row for each side that it may be seen from
-    bool grey = false;                 ///< the three bands coincide: one stands for them
-    bool coloured = false;             ///< light that arrives differs between the three bands
-    bool mirrors = false;              ///< its surface mirrors light: needs openness
-    bool filtered = false;             ///< its textures, where others see it: means over areas
-    formats::Rgb tint{1, 1, 1};        ///< times the base colour
+    /// No row holds what crosses the medium unscattered: it counts as bright as what scatters.
+    bool fills_crossed = false;
+    bool at_entry = false;       ///< light leaves the medium where it entered
+    bool separate = false;       ///< the row for all views is apart from the harmonics
+    bool sheet = false;          ///< a row for each side that it may be seen from
+    bool grey = false;           ///< the three bands coincide: one is stored
+    bool coloured = false;       ///< light that arrives differs between the three bands
+    bool mirrors = false;        ///< its surface mirrors light: needs openness
+    bool filtered = false;       ///< its textures, where others see it: means over areas
+    formats::Rgb tint{1, 1, 1};  ///< times the base colour
     /// Of the harmonics, those filled with light that nothing scatters: 0, 4 or 9.
     std::uint32_t straight_harmonics = 0;
 
@@ -42,7 +44,7 @@ struct RowLayout {
     std::uint32_t bands() const { return coloured || ((translucent || sheet) && !grey) ? 3 : 1; }
     /// Row of the first harmonic.
     std::uint32_t first_harmonic() const { return separate ? 1 : 0; }
-    /// h_0 through which row 0 is seen: what is the same for all views is divided by it.
+    /// h_0 of row 0: rows for all views are divided by it.
     double view_of_constant() const;
 };
 
@@ -54,7 +56,7 @@ std::vector<RowLayout> layout_rows(const EffectTable& effects, const formats::Sc
 RowLayout layout_material(const EffectTable& effects, const formats::Material& material,
                           std::span<const PlanEntry> decisions, const Knobs& knobs);
 
-/// Whether rays are traced: through media, or to find out what stands before the light.
+/// Whether rays are traced, through media or for visibility.
 bool needs_hierarchy(std::span<const RowLayout> layouts);
 
 }  // namespace opaline::bake

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "bake/plan/cost_by_size.h"
 #include "bake/plan/knobs.h"
-#include "bake/plan/rates.h"
 #include "bake/plan/row_layout.h"
 #include "bake/scene/scene_facts.h"
 #include "formats/scene.h"
@@ -22,7 +22,6 @@ struct Work {
 
 /// The inputs of all costs.
 struct CostInput {
-    const Rates& rates;
     const Knobs& knobs;
     double triangles = 0;  ///< of the scene
     double receivers = 0;  ///< of the scene
@@ -43,6 +42,15 @@ struct SubjectCost {
 
 /// Memory for effects that gather many receivers together.
 inline constexpr double kBatchBytes = 2147483648.0;
+
+/// Seconds of one thread, of work that stages of several rooms do. These and those of single rooms
+/// were measured once, on one core of a Xeon of 2023; what a machine and its scenes take over them
+/// is learnt (StageRates).
+inline constexpr CostBySize kCoherentRay{4.7e-8,
+                                         7.7e-8};  ///< of a receiver's packets, cosine included
+inline constexpr double kOpenCell = 1.8e-9;  ///< the cosine of such a ray's cell in an empty scene
+inline constexpr double kEncodeGrey = 5.8e-9;  ///< transform, selection, quantising: texel of a row
+inline constexpr double kGatherEntry = 3e-9;   ///< one entry of a sparse row into a receiver's row
 
 /// Rays from one receiver to all texels: half of them lie below its horizon.
 double count_rays(std::uint32_t cubemap_size);

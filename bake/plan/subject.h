@@ -5,7 +5,7 @@
 
 namespace opaline::bake {
 
-/// What a decision is about. A material stands for its surfaces and what fills them.
+/// The subject of a decision. A material represents its surfaces and the medium inside.
 struct Subject {
     enum class Kind : std::uint8_t { material, volume, layer, emitter } kind = Kind::material;
     std::uint32_t index = 0;  ///< into Scene::materials, volumes or layers

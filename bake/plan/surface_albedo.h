@@ -14,16 +14,16 @@ inline bool sends_light(const RowLayout& layout) {
 
 /// The share of light that leaves a point of a surface again.
 struct SurfaceAlbedo {
-    /// Base colour with vertex colours, veins and image; of a glossy surface times what its lobe
-    /// leaves to that. A thin wall reflects and transmits shares of this.
+    /// Base colour with vertex colours, veins and image; of a glossy surface times the share that
+    /// its lobe does not mirror. A thin wall reflects and transmits shares of this.
     formats::Rgb diffuse{1, 1, 1};
     formats::Rgb mirrored{0, 0, 0};  ///< by the lobe: it stays on the side where it arrives
 
     formats::Rgb sum() const { return diffuse + mirrored; }
 };
 
-/// Both as means over diffuse views. Where mirrored light goes is not kept: it goes on as if
-/// diffuse. `layout`: of its material; `view`: what images are looked up over; null: at the point.
+/// Both as means over diffuse views. Mirrored light goes on as if diffuse. `layout`: of its
+/// material; `view`: footprint of image look-ups; null: at the point.
 SurfaceAlbedo eval_surface_albedo(const formats::Scene& scene, const RowLayout& layout,
                                   const SurfacePoint& point, const TextureView* view = nullptr);
 

@@ -29,6 +29,7 @@ struct BodyPoint {
     glm::vec3 normal;            ///< unit, outward; {0,0,0}: nothing is gathered
     glm::vec3 inner;             ///< [m], just inside all triangles that meet at the point
     std::uint32_t material = 0;  ///< whose triangles bound the body
+    glm::vec3 aside{0};          ///< [m], along the own face, away from sharp edges (body_points.h)
 };
 
 /// The receivers of one part of a scene, as they stand in the file.

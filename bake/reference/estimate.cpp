@@ -70,7 +70,8 @@ formats::Result<Estimate> estimate_pixels(
                     const auto part = static_cast<std::uint32_t>(i % parts);
                     Piece piece;
                     const std::uint32_t end = std::min(round, (part + 1) * kPerPiece);
-                    for (std::uint32_t s = part * kPerPiece; s < end; ++s) {
+                    // Dense media take long: a stop is heard between paths.
+                    for (std::uint32_t s = part * kPerPiece; s < end && !context.cancelled(); ++s) {
                         RandomStream random(options.seed, pixel, options.first + first + s);
                         const PathSample one = sample(pixel, random);
                         piece.moments.add(glm::dvec3(one.radiance));

@@ -13,6 +13,7 @@ namespace opaline::bake {
 namespace {
 
 bool count_event(const PathSpace& space, Path& path) {
+    path.passed = 0;
     return ++path.events <= space.options.max_depth;
 }
 

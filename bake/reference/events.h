@@ -21,7 +21,8 @@ struct Path {
     SurroundingMedia stack;
     PathState state;
     std::uint32_t events = 0;
-    std::uint32_t key = 0;  ///< of all its rays: HitScene::closest_hit
+    std::uint32_t passed = 0;  ///< surfaces without an event since the last one
+    std::uint32_t key = 0;     ///< of all its rays: HitScene::closest_hit
     /// [1/sr] of `direction` if the light was sampled at the last event too; else 0
     float pdf = 0;
     glm::vec3 vertex{0};                 ///< where that event was

@@ -26,6 +26,22 @@ RTCRay make_ray(const RayOrigin& origin, glm::vec3 direction, float nearest, flo
     return ray;
 }
 
+/// A query that passes the triangles it starts on.
+struct LeavingContext {
+    RTCIntersectContext embree{};
+    const EmbreeScene& triangles;
+    const RayOrigin& origin;
+};
+
+void pass_own_triangles(const RTCFilterFunctionNArguments* arguments) {
+    const auto& own = *reinterpret_cast<const LeavingContext*>(arguments->context);
+    const std::uint32_t primitive =
+        own.triangles.geometry(RTCHitN_geomID(arguments->hit, arguments->N, 0)).primitive;
+    if (own.origin.is_on({primitive, RTCHitN_primID(arguments->hit, arguments->N, 0)})) {
+        arguments->valid[0] = 0;
+    }
+}
+
 glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
     const float length = glm::length(v);
     return length > 0 ? v / length : otherwise;
@@ -34,7 +50,7 @@ glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
 }  // namespace
 
 formats::Result<HitScene> HitScene::build(const Scene& scene, unsigned threads) {
-    auto triangles = EmbreeScene::build(scene, threads);
+    auto triangles = EmbreeScene::build(scene, threads, true);
     if (!triangles) {
         return std::move(triangles).error();
     }
@@ -61,52 +77,50 @@ HitScene::HitScene(const Scene& scene, EmbreeScene triangles)
 std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::vec3 direction,
                                                 float reach, std::uint32_t key) const {
     assert(origin.free >= 0);
-    float nearest = origin.free;
-    while (nearest <= reach) {
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        RTCRayHit ray{make_ray(origin, direction, nearest, reach, key), {}};
-        ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(triangles_.handle(), &context, &ray);
-        if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-            return std::nullopt;
-        }
-        SurfaceHit hit;
-        hit.primitive = triangles_.geometry(ray.hit.geomID).primitive;
-        hit.triangle = ray.hit.primID;
-        if (hit.primitive == origin.primitive && hit.triangle == origin.triangle) {
-            // A straight line leaves a plane once; rounding caused this second hit. Continue behind
-            // it.
-            nearest = std::nextafter(ray.ray.tfar, std::numeric_limits<float>::infinity());
-            continue;
-        }
-        hit.distance = ray.ray.tfar;
-        hit.u = ray.hit.u, hit.v = ray.hit.v;
-        const Primitive& p = scene_->primitives[hit.primitive];
-        const std::uint32_t* corner = &p.index[3 * std::size_t{hit.triangle}];
-        const float w = 1 - hit.u - hit.v;
-        const glm::vec3 a = w * p.position[corner[0]];
-        const glm::vec3 b = hit.u * p.position[corner[1]];
-        const glm::vec3 c = hit.v * p.position[corner[2]];
-        hit.position = a + b + c;
-        hit.flat = unit_or({ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}, -direction);
-        const glm::vec3 smooth =
-            w * p.normal[corner[0]] + hit.u * p.normal[corner[1]] + hit.v * p.normal[corner[2]];
-        hit.smooth = unit_or(smooth, hit.flat);
-        if (glm::dot(hit.smooth, hit.flat) <= 0) {
-            hit.smooth = hit.flat;
-        }
-        // Rounding of the three products and two sums above, across the plane.
-        constexpr float kRoundings = 8 * std::numeric_limits<float>::epsilon();
-        hit.error =
-            kRoundings * glm::dot(glm::abs(hit.flat), glm::abs(a) + glm::abs(b) + glm::abs(c));
-        return hit;
+    if (!(origin.free <= reach)) {
+        return std::nullopt;
     }
-    return std::nullopt;
+    LeavingContext context{{}, triangles_, origin};
+    rtcInitIntersectContext(&context.embree);
+    // A straight line leaves a plane once; rounding causes a second hit.
+    context.embree.filter = origin.triangles > 0 ? pass_own_triangles : nullptr;
+    // Nor does it meet the triangles beside it where it starts on an edge.
+    const float nearest = origin.triangles > 0
+                              ? std::max(origin.free, std::numeric_limits<float>::min())
+                              : origin.free;
+    RTCRayHit ray{make_ray(origin, direction, nearest, reach, key), {}};
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(triangles_.handle(), &context.embree, &ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
+        return std::nullopt;
+    }
+    SurfaceHit hit;
+    hit.primitive = triangles_.geometry(ray.hit.geomID).primitive;
+    hit.triangle = ray.hit.primID;
+    hit.distance = ray.ray.tfar;
+    hit.u = ray.hit.u, hit.v = ray.hit.v;
+    const Primitive& p = scene_->primitives[hit.primitive];
+    const std::uint32_t* corner = &p.index[3 * std::size_t{hit.triangle}];
+    const float w = 1 - hit.u - hit.v;
+    const glm::vec3 a = w * p.position[corner[0]];
+    const glm::vec3 b = hit.u * p.position[corner[1]];
+    const glm::vec3 c = hit.v * p.position[corner[2]];
+    hit.position = a + b + c;
+    hit.flat = unit_or({ray.hit.Ng_x, ray.hit.Ng_y, ray.hit.Ng_z}, -direction);
+    const glm::vec3 smooth =
+        w * p.normal[corner[0]] + hit.u * p.normal[corner[1]] + hit.v * p.normal[corner[2]];
+    hit.smooth = unit_or(smooth, hit.flat);
+    if (glm::dot(hit.smooth, hit.flat) <= 0) {
+        hit.smooth = hit.flat;
+    }
+    // Rounding of the three products and two sums above, across the plane.
+    constexpr float kRoundings = 8 * std::numeric_limits<float>::epsilon();
+    hit.error = kRoundings * glm::dot(glm::abs(hit.flat), glm::abs(a) + glm::abs(b) + glm::abs(c));
+    return hit;
 }
 
 bool HitScene::is_blocked(const RayOrigin& origin, glm::vec3 direction, std::uint32_t key) const {
-    if (origin.triangle != formats::kNone) {
+    if (origin.triangles > 0) {
         return closest_hit(origin, direction, std::numeric_limits<float>::infinity(), key)
             .has_value();
     }
@@ -120,7 +134,16 @@ bool HitScene::is_blocked(const RayOrigin& origin, glm::vec3 direction, std::uin
 
 RayOrigin leave_surface(const SurfaceHit& hit, glm::vec3 direction) {
     const float side = glm::dot(direction, hit.flat) < 0 ? -hit.error : hit.error;
-    return {hit.position + side * hit.flat, hit.primitive, hit.triangle};
+    RayOrigin origin{hit.position + side * hit.flat};
+    origin.add({hit.primitive, hit.triangle});
+    return origin;
+}
+
+RayOrigin go_straight_on(const RayOrigin& before, RayOrigin next) {
+    for (std::uint32_t i = 0; i < before.triangles && next.triangles < next.triangle.size(); ++i) {
+        next.triangle[next.triangles++] = before.triangle[i];
+    }
+    return next;
 }
 
 }  // namespace opaline::bake

@@ -60,11 +60,15 @@ glm::vec3 pass_line(const PathSpace& space, LightLine line, SurroundingMedia& st
     const ReferenceScene& scene = space.scene;
     const HitScene& surfaces = scene.surfaces;
     glm::vec3 passing(1);
+    std::uint32_t steps = 0;
     while (const auto hit = surfaces.closest_hit(line.from, line.direction, line.reach, line.key)) {
         passing *=
             pass_space(scene, stack, line.from.position, line.direction, hit->distance, random);
         if (hit->primitive == line.primitive && hit->triangle == line.triangle) {
             return passing;
+        }
+        if (++steps > kMostSteps) {
+            return glm::vec3(0);
         }
         const std::uint32_t material = surfaces.scene().primitives[hit->primitive].material;
         const std::uint32_t medium = scene.medium_of[material];
@@ -74,7 +78,8 @@ glm::vec3 pass_line(const PathSpace& space, LightLine line, SurroundingMedia& st
         const bool was_out = stack.empty();
         const std::uint32_t before = stack.top();
         const float eta = index_in(scene, stack);
-        glm::dot(line.direction, hit->flat) < 0 ? stack.enter(medium) : stack.leave(medium);
+        const RayOrigin beyond =
+            cross_boundary(scene, line.from, line.direction, *hit, line.key, stack);
         if (before != stack.top()) {
             if (!is_matched(index_in(scene, stack) / eta)) {
                 return glm::vec3(0);
@@ -84,13 +89,12 @@ glm::vec3 pass_line(const PathSpace& space, LightLine line, SurroundingMedia& st
                 passing *= base_color_at(surfaces.scene(), *hit);
             }
         }
-        line.from = leave_surface(*hit, line.direction);
+        line.from = go_straight_on(line.from, beyond);
         line.reach = std::max(0.0f, line.reach - hit->distance);
     }
-    const bool ends_well =
-        line.is_to_sky
-            ? stack.empty() && counts_sky(space, state)
-            : line.triangle == formats::kNone;  // else rounding at an edge
+    const bool ends_well = line.is_to_sky
+                               ? stack.empty() && counts_sky(space, state)
+                               : line.triangle == formats::kNone;  // else rounding at an edge
     return ends_well ? passing * pass_space(scene, stack, line.from.position, line.direction,
                                             line.reach, random)
                      : glm::vec3(0);

@@ -21,27 +21,43 @@ float index_of(const ReferenceScene& scene, const SurroundingMedia& stack) {
     return stack.empty() ? 1 : scene.media[stack.top()].eta;
 }
 
+// A straight line goes on. False: the path is held up where more faces meet than it can tell apart.
+bool pass_surface(Path& path, const RayOrigin& beyond) {
+    path.origin = go_straight_on(path.origin, beyond);
+    path.lost = ++path.passed > kMostSteps;
+    return !path.lost;
+}
+
+// The same place as `other`, on its triangles as well.
+RayOrigin start_on(const RayOrigin& other, const RayOrigin& at) {
+    RayOrigin start = other;
+    start.position = at.position;
+    return start;
+}
+
 bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, std::uint32_t medium,
                    const TextureView* view, RandomStream& random) {
     const ReferenceScene& scene = space.scene;
     const bool enters = glm::dot(path.direction, hit.flat) < 0;
     Crossing crossing;
     crossing.beyond = path.stack;
-    enters ? crossing.beyond.enter(medium) : crossing.beyond.leave(medium);
-    crossing.far = leave_surface(hit, path.direction);
+    crossing.far =
+        cross_boundary(scene, path.origin, path.direction, hit, path.key, crossing.beyond);
     if (path.stack.top() == crossing.beyond.top()) {
         // A shell inside or overlapping a body of the same medium has no effect.
         path.stack = crossing.beyond;
-        path.origin = crossing.far;
-        return true;
+        return pass_surface(path, crossing.far);
     }
     if (path.stack.empty()) {
         crossing.color = base_color_at(scene.surfaces.scene(), hit, view);
     }
     const float ratio = index_of(scene, crossing.beyond) / index_of(scene, path.stack);
     if (is_matched(ratio)) {
+        const RayOrigin before = path.origin;
         pass_boundary(path, crossing);
-        return path.beta != glm::vec3(0) && is_wanted(space, path.state);
+        path.origin = before;
+        return pass_surface(path, crossing.far) && path.beta != glm::vec3(0) &&
+               is_wanted(space, path.state);
     }
     const float side = enters ? 1.0f : -1.0f;
     crossing.normal = side * shading_normal(scene.surfaces.scene(), hit);
@@ -50,12 +66,12 @@ bool meet_boundary(const PathSpace& space, Path& path, const SurfaceHit& hit, st
     crossing.alpha = scene.media[medium].boundary_alpha;
     if (crossing.alpha > 0) {
         crossing.normal = fitting_normal(path.direction, crossing.normal, crossing.flat);
-        crossing.near = leave_surface(hit, crossing.flat);
+        crossing.near = start_on(crossing.far, leave_surface(hit, crossing.flat));
         return reflect_or_refract(space, path, crossing, random);
     }
     crossing.split =
         split_at_smooth_boundary(path.direction, crossing.normal, crossing.flat, ratio);
-    crossing.near = leave_surface(hit, crossing.split.reflected);
+    crossing.near = start_on(crossing.far, leave_surface(hit, crossing.split.reflected));
     return reflect_or_refract(space, path, crossing, random);
 }
 
@@ -90,8 +106,7 @@ bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, Ran
     if (back && !scene.materials[number].double_sided) {
         if (path.state.stage == PathState::Stage::camera) {
             // Culled in pictures; black to other light.
-            path.origin = leave_surface(hit, path.direction);
-            return true;
+            return pass_surface(path, leave_surface(hit, path.direction));
         }
         return false;
     }
@@ -178,7 +193,7 @@ RayOrigin enter_at(glm::vec3 vertex, glm::vec3 inside, glm::vec3 normal, glm::ve
     constexpr float kGrazing = 0.1f;
     const float depth = glm::dot(vertex - inside, normal);
     const float way = std::max(0.0f, depth) / std::max(kGrazing, -glm::dot(direction, normal));
-    return {inside - way * direction, formats::kNone, formats::kNone, way};
+    return {inside - way * direction, way};
 }
 
 // Of a path's rays, where a surface lets some pass by chance.
@@ -277,8 +292,11 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
         walks = reflect_at_surface(space, path, point, random);
     } else {
         Crossing crossing;
-        crossing.beyond = path.stack;
-        crossing.beyond.enter(receiver.medium);
+        crossing.beyond = receiver.within;
+        if (receiver.within.empty()) {
+            crossing.beyond = path.stack;
+            crossing.beyond.enter(receiver.medium);
+        }
         const float ratio =
             space.scene.media[receiver.medium].eta / index_of(space.scene, path.stack);
         crossing.split = split_at_boundary(path.direction, normal, ratio);

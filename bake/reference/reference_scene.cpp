@@ -52,27 +52,41 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
 
 namespace {
 
+std::uint32_t medium_at(const ReferenceScene& scene, const SurfaceHit& hit) {
+    return scene.medium_of[scene.surfaces.scene().primitives[hit.primitive].material];
+}
+
 // Exits minus entries of each medium's bodies along a line.
 std::vector<int> count_leaving(const ReferenceScene& scene, glm::vec3 point, glm::vec3 direction) {
     std::vector<int> leaving(scene.media.size());
     RayOrigin from{point};
-    constexpr int kMost = 10000;  // crossings; ends a line that rounding holds up
-    for (int i = 0; i < kMost; ++i) {
+    for (std::uint32_t i = 0; i < kMostSteps; ++i) {
         const auto hit =
             scene.surfaces.closest_hit(from, direction, std::numeric_limits<float>::infinity());
         if (!hit) {
             break;
         }
-        const std::uint32_t material = scene.surfaces.scene().primitives[hit->primitive].material;
-        if (const std::uint32_t medium = scene.medium_of[material]; medium != formats::kNone) {
-            leaving[medium] += glm::dot(direction, hit->flat) > 0 ? 1 : -1;
-        }
-        from = leave_surface(*hit, direction);
+        const RayOrigin beyond =
+            scene.surfaces.cross(from, direction, *hit, 0, [&](const SurfaceHit& met) {
+                if (const std::uint32_t medium = medium_at(scene, met); medium != formats::kNone) {
+                    leaving[medium] += glm::dot(direction, met.flat) > 0 ? 1 : -1;
+                }
+            });
+        from = go_straight_on(from, beyond);
     }
     return leaving;
 }
 
 }  // namespace
+
+RayOrigin cross_boundary(const ReferenceScene& scene, const RayOrigin& origin, glm::vec3 direction,
+                         const SurfaceHit& hit, std::uint32_t key, SurroundingMedia& stack) {
+    return scene.surfaces.cross(origin, direction, hit, key, [&](const SurfaceHit& met) {
+        if (const std::uint32_t medium = medium_at(scene, met); medium != formats::kNone) {
+            glm::dot(direction, met.flat) < 0 ? stack.enter(medium) : stack.leave(medium);
+        }
+    });
+}
 
 SurroundingMedia surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up) {
     SurroundingMedia stack;

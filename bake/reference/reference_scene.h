@@ -53,6 +53,11 @@ struct SurroundingMedia {
     void leave(std::uint32_t m);
 };
 
+/// A straight line passes a boundary at `hit`, and those that lie on it. `stack` becomes that
+/// beyond. Returns the start of a line there.
+RayOrigin cross_boundary(const ReferenceScene& scene, const RayOrigin& origin, glm::vec3 direction,
+                         const SurfaceHit& hit, std::uint32_t key, SurroundingMedia& stack);
+
 /// The bodies around a point: a line from the point leaves them more often than it enters. Three
 /// directions within 60 degrees of `up` vote, because a body may have holes.
 SurroundingMedia surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up);

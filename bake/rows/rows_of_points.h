@@ -8,7 +8,7 @@
 
 namespace opaline::bake {
 
-/// Frees what a subject has but for its studies.
+/// Frees all state of a subject except its studies.
 void forget_samples(SubjectState& subject);
 
 /// Dense rows of any points of one studied subject: terms * bands * 6 n n Haar coefficients each, n

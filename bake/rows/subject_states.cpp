@@ -37,7 +37,7 @@ void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, co
             layout_material(bake.effects, bake.scene.materials[state.material], decisions, knobs);
         for (std::size_t e = 0; e < state.effects.size(); ++e) {
             const EffectDescriptor& effect = bake.effects.effects[e];
-            // Where light leaves at its entry, one effect adds it, and others say how much.
+            // Where light leaves at its entry, one effect adds the row, and others scale it.
             const bool helps = state.layout.at_entry && effect.add_at_entry != nullptr;
             state.effects[e].acts = acts_on(effect, decisions, state.layout) &&
                                     (bake.has_environment() || effect.adds_other_light || helps);

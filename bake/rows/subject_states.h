@@ -20,8 +20,7 @@ struct SubjectState {
 std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan,
                                          const Knobs& knobs);
 
-/// What the plan says of the subjects now that some effects have studied them: rows and effects
-/// that act; what was studied stays.
+/// Updates layouts and acting effects of the subjects after their studies, which are kept.
 void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, const Knobs& knobs,
                      std::vector<SubjectState>& subjects);
 

@@ -1,9 +1,11 @@
 #include "bake/scene/body_shells.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <numeric>
+#include <span>
 #include <tuple>
-#include <unordered_map>
 
 #include "bake/scene/weld.h"
 
@@ -13,42 +15,73 @@ namespace {
 using formats::Primitive;
 using formats::Scene;
 
-// One edge of a triangle, from point `low` to `high` > `low` or in the opposite direction.
+// One edge of a triangle, from its point of the lower number to `high`, or in the opposite
+// direction.
 struct Side {
-    std::uint32_t low, high, triangle;
+    std::uint32_t high, triangle;
     bool upward;
 };
 
-// Two triangles that share an edge with no third.
+// Another triangle that shares an edge with no third.
 struct Neighbour {
     std::uint32_t triangle;
     bool same_way;  // they already face the same way
 };
 
-std::vector<std::vector<Neighbour>> find_neighbours(BodyShells& body) {
-    std::vector<Side> sides;
-    sides.reserve(3 * body.triangle.size());
+// Of one triangle: one at each edge at most.
+struct Neighbours {
+    std::array<Neighbour, 3> at;
+    std::uint32_t count = 0;
+
+    const Neighbour* begin() const { return at.data(); }
+    const Neighbour* end() const { return at.data() + count; }
+};
+
+// Calls visit(low, side) for all edges of all triangles.
+template <class Visit>
+void for_each_side(const BodyShells& body, Visit&& visit) {
     for (std::uint32_t t = 0; t < body.triangle.size(); ++t) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = body.triangle[t].point[k];
             const std::uint32_t b = body.triangle[t].point[(k + 1) % 3];
-            sides.push_back({std::min(a, b), std::max(a, b), t, a < b});
+            visit(std::min(a, b), Side{std::max(a, b), t, a < b});
         }
     }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-        return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-    });
-    std::vector<std::vector<Neighbour>> neighbours(body.triangle.size());
-    for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-        while (end < sides.size() && sides[end].low == sides[i].low &&
-               sides[end].high == sides[i].high) {
-            ++end;
-        }
-        body.open_edges += (end - i) % 2;
-        if (end - i == 2) {
-            const Side &a = sides[i], &b = sides[i + 1];
-            neighbours[a.triangle].push_back({b.triangle, a.upward != b.upward});
-            neighbours[b.triangle].push_back({a.triangle, a.upward != b.upward});
+}
+
+// Sides are sorted by the lower point by counting, in a time that is linear in their number.
+std::vector<Neighbours> find_neighbours(BodyShells& body) {
+    std::vector<std::size_t> first(body.position.size() + 2, 0);  // side of each point
+    for_each_side(body, [&](std::uint32_t low, const Side&) { ++first[low + 2]; });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    std::vector<Side> sides(3 * body.triangle.size());
+    for_each_side(body,
+                  [&](std::uint32_t low, const Side& side) { sides[first[low + 1]++] = side; });
+    std::vector<Neighbours> neighbours(body.triangle.size());
+    const auto join = [&](const Side& of, const Side& to) {
+        Neighbours& own = neighbours[of.triangle];
+        own.at[own.count++] = {to.triangle, of.upward != to.upward};
+    };
+    for (std::size_t low = 0; low < body.position.size(); ++low) {
+        const std::span<Side> own =
+            std::span(sides).subspan(first[low], first[low + 1] - first[low]);
+        std::ranges::sort(own, [](const Side& a, const Side& b) {
+            return std::tie(a.high, a.triangle) < std::tie(b.high, b.triangle);
+        });
+        for (std::size_t i = 0, end = 0; i < own.size(); i = end) {
+            while (end < own.size() && own[end].high == own[i].high) {
+                ++end;
+            }
+            if ((end - i) % 2 != 0) {
+                ++body.open_edges;
+                for (std::size_t k = i; k < end; ++k) {
+                    body.triangle[own[k].triangle].is_at_end = true;
+                }
+            }
+            if (end - i == 2) {
+                join(own[i], own[i + 1]);
+                join(own[i + 1], own[i]);
+            }
         }
     }
     return neighbours;
@@ -89,6 +122,30 @@ double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriang
     return 0;
 }
 
+// Points by their position: numbers in a table that is half empty, in which a search goes on from
+// slot to slot.
+class Places {
+  public:
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+
+    explicit Places(std::size_t most) : slots_(std::bit_ceil(2 * most + 1), kNone) {}
+    std::uint32_t find_or_add(glm::vec3 at, std::vector<glm::vec3>& position) {
+        for (std::size_t slot = PositionHash{}(at);; ++slot) {
+            std::uint32_t& number = slots_[slot & (slots_.size() - 1)];
+            if (number == kNone) {
+                number = static_cast<std::uint32_t>(position.size());
+                position.push_back(at);
+            }
+            if (position[number] == at) {
+                return number;
+            }
+        }
+    }
+
+  private:
+    std::vector<std::uint32_t> slots_;
+};
+
 // Cuts the body into shells and turns each to the direction of its larger part.
 void cut_into_shells(BodyShells& body) {
     const auto neighbours = find_neighbours(body);
@@ -105,6 +162,7 @@ void cut_into_shells(BodyShells& body) {
         for (std::size_t at = shell.first; at < body.order.size(); ++at) {
             BodyTriangle& t = body.triangle[body.order[at]];
             (t.turned ? turned : kept) += glm::length(area_vector(body, t));
+            shell.is_open = shell.is_open || t.is_at_end;
             for (const Neighbour& n : neighbours[body.order[at]]) {
                 if (!seen[n.triangle]) {
                     seen[n.triangle] = true;
@@ -137,6 +195,12 @@ void cut_into_shells(BodyShells& body) {
     }
 }
 
+std::vector<bool> only(const Scene& scene, std::uint32_t material) {
+    std::vector<bool> chosen(scene.materials.size(), false);
+    chosen[material] = true;
+    return chosen;
+}
+
 }  // namespace
 
 std::array<glm::dvec3, 3> corners(const BodyShells& body, const BodyTriangle& t) {
@@ -151,28 +215,32 @@ glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t) {
 }
 
 BodyShells weld_triangles(const Scene& scene, std::uint32_t material) {
+    return weld_triangles(scene, only(scene, material));
+}
+
+BodyShells weld_triangles(const Scene& scene, const std::vector<bool>& chosen) {
     BodyShells body;
-    std::unordered_map<glm::vec3, std::uint32_t, PositionHash> places;
     std::size_t vertices = 0;
     for (const Primitive& primitive : scene.primitives) {
-        vertices += primitive.material == material ? primitive.position.size() : 0;
+        vertices += chosen[primitive.material] ? primitive.position.size() : 0;
     }
-    places.reserve(vertices);
+    Places places(vertices);
+    std::vector<std::uint32_t> point;  // of each vertex of a primitive
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
         const Primitive& primitive = scene.primitives[p];
-        if (primitive.material != material) {
+        if (!chosen[primitive.material]) {
             continue;
         }
+        point.assign(primitive.position.size(), Places::kNone);
         for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
             BodyTriangle t{{}, p, i};
             for (std::uint32_t k = 0; k < 3; ++k) {
-                const glm::vec3 at = weld_key(primitive.position[primitive.index[i + k]]);
-                const auto [it, added] =
-                    places.try_emplace(at, static_cast<std::uint32_t>(body.position.size()));
-                if (added) {
-                    body.position.push_back(at);
+                const std::uint32_t vertex = primitive.index[i + k];
+                if (point[vertex] == Places::kNone) {
+                    point[vertex] =
+                        places.find_or_add(weld_key(primitive.position[vertex]), body.position);
                 }
-                t.point[k] = it->second;
+                t.point[k] = point[vertex];
             }
             // Skip triangles with two equal corners: their neighbours' edges coincide and join
             // directly.
@@ -185,7 +253,11 @@ BodyShells weld_triangles(const Scene& scene, std::uint32_t material) {
 }
 
 BodyShells make_body_shells(const Scene& scene, std::uint32_t material) {
-    BodyShells body = weld_triangles(scene, material);
+    return make_body_shells(scene, only(scene, material));
+}
+
+BodyShells make_body_shells(const Scene& scene, const std::vector<bool>& chosen) {
+    BodyShells body = weld_triangles(scene, chosen);
     cut_into_shells(body);
     return body;
 }

@@ -15,6 +15,7 @@ struct BodyTriangle {
     std::array<std::uint32_t, 3> point;    ///< indices into BodyShells::position
     std::uint32_t primitive, first_index;  ///< where it stands in the scene
     bool turned = false;                   ///< faces the other way than in the scene
+    bool is_at_end = false;                ///< an odd number of triangles meet at one of its edges
 };
 
 /// A connected set of triangles.
@@ -27,7 +28,8 @@ struct BodyShell {
     /// away from it; 1 beyond a right angle. In a closed convex shell that faces outward `valley`
     /// is 0: folds below the rounding error of the coordinates do not count.
     double valley = 0, ridge = 0;
-    bool inside = false;  ///< of another shell
+    bool inside = false;   ///< of another shell
+    bool is_open = false;  ///< has an edge at which an odd number of triangles meet
 };
 
 /// The surface of one material, shell by shell.
@@ -48,9 +50,13 @@ glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t);
 /// and `triangle` alone. Those folded to a line are left out.
 BodyShells weld_triangles(const formats::Scene& scene, std::uint32_t material);
 
+/// As the former, of all materials that are chosen.
+BodyShells weld_triangles(const formats::Scene& scene, const std::vector<bool>& chosen);
+
 /// The shells of a material's surface. Vertices at one position are one point. Triangles are
 /// connected if they share an edge with exactly one other triangle. The smaller part of a shell by
 /// area is turned, so that the whole shell faces one way. Triangles folded to a line are left out.
 BodyShells make_body_shells(const formats::Scene& scene, std::uint32_t material);
+BodyShells make_body_shells(const formats::Scene& scene, const std::vector<bool>& chosen);
 
 }  // namespace opaline::bake

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "bake/scene/sample_image.h"
+#include "formats/opal/thin_glass.h"
 
 namespace opaline::bake {
 namespace {
@@ -42,6 +43,13 @@ std::optional<Coverage> make_coverage(const formats::Scene& scene, std::uint32_t
     }
     Coverage coverage;
     coverage.mode = material.alpha_mode;
+    if (is_clear(material)) {
+        coverage.clear = material.sheet->clear;
+        coverage.eta = material.sheet->eta;
+    }
+    if (coverage.mode == Material::AlphaMode::opaque) {
+        return coverage;
+    }
     coverage.alpha = material.alpha;
     coverage.cutoff = material.alpha_cutoff;
     coverage.index = p.index;
@@ -84,7 +92,13 @@ float coverage_at(const Coverage& coverage, std::uint32_t triangle, float u, flo
 }
 
 bool meets_surface(const Coverage& coverage, const Passage& passage, float u, float v) {
-    const float share = coverage_at(coverage, passage.triangle, u, v);
+    float share = coverage.mode == Material::AlphaMode::opaque
+                      ? 1.0f
+                      : coverage_at(coverage, passage.triangle, u, v);
+    if (coverage.clear > 0) {
+        share *=
+            1 - coverage.clear * formats::thin_glass_transmittance(passage.cosine, coverage.eta);
+    }
     if (share <= 0 || share >= 1) {
         return share > 0;
     }

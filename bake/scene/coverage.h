@@ -12,9 +12,23 @@
 
 namespace opaline::bake {
 
-/// Whether parts of a material's surfaces are not there (Material::alpha_mode).
+/// Whether light passes a material's surfaces straight as through thin glass (Sheet::clear).
+inline bool is_clear(const formats::Material& material) {
+    return material.sheet && material.sheet->clear > 0;
+}
+
+/// Whether a material is opaque and lit and seen on both sides: a sheet that reflects all of its
+/// base colour.
+inline bool is_wall(const formats::Material& material) {
+    return material.sheet && material.sheet->reflect == formats::Rgb{1, 1, 1} &&
+           material.sheet->transmit == formats::Rgb{};
+}
+
+/// Whether light passes a material's surfaces straight: parts of them are not there
+/// (Material::alpha_mode), or are clear.
 inline bool has_holes(const formats::Material& material) {
-    return material.alpha_mode != formats::Material::AlphaMode::opaque && !material.medium;
+    return (material.alpha_mode != formats::Material::AlphaMode::opaque && !material.medium) ||
+           is_clear(material);
 }
 
 /// What says where a primitive's surface is: a copy of its own, which outlives the scene.
@@ -26,6 +40,10 @@ struct Coverage {
     std::vector<glm::vec2> texcoord;
     std::shared_ptr<const formats::Image8> image;  ///< null: 1; its alpha counts
     formats::TextureWrap wrap_u{}, wrap_v{};
+    float clear = 0, eta = 1.5f;  ///< as Sheet's
+
+    /// Some rays pass by chance.
+    bool has_chances() const { return mode == formats::Material::AlphaMode::blend || clear > 0; }
 };
 
 /// Images that coverages share, by index into Scene::images.
@@ -44,11 +62,12 @@ struct Passage {
     glm::vec3 origin{0}, direction{0};
     std::uint32_t key = 0;  ///< another one makes other choices
     std::uint32_t primitive = 0, triangle = 0;
+    float cosine = 1;  ///< with the triangle's normal, its absolute value
 };
 
-/// Whether a ray meets the surface there. Where a share is, the ray meets it with that probability:
-/// a hash of the ray and the triangle decides, so that the answer depends on no order, and the
-/// choices of rays, and of layers on one ray, are independent.
+/// Whether a ray meets the surface there, and does not pass it as glass. Where a share is, the ray
+/// meets it with that probability: a hash of the ray and the triangle decides, so that the answer
+/// depends on no order, and the choices of rays, and of layers on one ray, are independent.
 bool meets_surface(const Coverage& coverage, const Passage& passage, float u, float v);
 
 }  // namespace opaline::bake

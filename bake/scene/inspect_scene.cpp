@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bake/scene/body_shells.h"
@@ -70,8 +72,31 @@ bool is_convex(const BodyShells& body, const BodyShell& shell, Searches& searche
     return !search.is_over();
 }
 
-// Size, colours and the tilt of shading normals against their facets.
-void inspect_primitive(const Primitive& primitive, MaterialFacts& facts) {
+// Of all edges where an odd number of triangles meet [m].
+double find_open_length(const BodyShells& body) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const BodyTriangle& t : body.triangle) {
+        for (std::size_t k = 0; k < 3; ++k) {
+            edges.push_back(std::minmax({t.point[k], t.point[(k + 1) % 3]}));
+        }
+    }
+    std::ranges::sort(edges);
+    double length = 0;
+    for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
+        while (end < edges.size() && edges[end] == edges[i]) {
+            ++end;
+        }
+        if ((end - i) % 2 == 1) {
+            length += glm::distance(glm::dvec3(body.position[edges[i].first]),
+                                    glm::dvec3(body.position[edges[i].second]));
+        }
+    }
+    return length;
+}
+
+// Size, colours and the tilt of shading normals against their facets. Volumes are those of cones
+// with their tip at `origin`, a point of the material's surface, so that holes take little away.
+void inspect_primitive(const Primitive& primitive, glm::dvec3 origin, MaterialFacts& facts) {
     facts.receivers += static_cast<double>(primitive.position.size());
     facts.triangles += static_cast<double>(primitive.index.size()) / 3;
     for (const glm::vec3 x : primitive.position) {
@@ -86,7 +111,7 @@ void inspect_primitive(const Primitive& primitive, MaterialFacts& facts) {
         const glm::dvec3 n = glm::cross(b - a, c - a);
         const double length = glm::length(n);
         facts.area += 0.5 * length;
-        facts.volume += glm::dot(a, glm::cross(b, c)) / 6;
+        facts.volume += glm::dot(a - origin, glm::cross(b - origin, c - origin)) / 6;
         for (std::size_t k = 0; k < 3 && length > 0; ++k) {
             const double cosine = glm::dot(n, glm::dvec3(primitive.normal[v[k]])) / length;
             facts.horizon.behind_facets = std::max(facts.horizon.behind_facets, 0.5 * (1 - cosine));
@@ -171,6 +196,10 @@ void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts
     MaterialFacts& own = facts.material[material];
     const BodyShells body = make_body_shells(scene, material);
     own.open_edges = body.open_edges;
+    if (body.open_edges > 0) {
+        const double length = find_open_length(body);
+        own.holes = own.area > 0 ? length * length / (4 * std::numbers::pi * own.area) : 1;
+    }
     own.parts = static_cast<std::uint32_t>(body.shell.size());
     const bool may_be_open = std::none_of(body.shell.begin(), body.shell.end(), folds_inward);
     if (may_be_open) {  // in a non-convex part some receiver sees another point of it
@@ -199,8 +228,14 @@ bool SceneFacts::is_open() const {
 SceneFacts inspect_scene(const Scene& scene) {
     SceneFacts facts;
     facts.material.resize(scene.materials.size());
+    std::vector<std::optional<glm::dvec3>> origin(scene.materials.size());
     for (const Primitive& primitive : scene.primitives) {
-        inspect_primitive(primitive, facts.material[primitive.material]);
+        std::optional<glm::dvec3>& of_material = origin[primitive.material];
+        if (!of_material && !primitive.position.empty()) {
+            of_material = primitive.position[0];
+        }
+        inspect_primitive(primitive, of_material.value_or(glm::dvec3(0)),
+                          facts.material[primitive.material]);
     }
     glm::vec3 largest(0);
     for (std::uint32_t m = 0; m < facts.material.size(); ++m) {

@@ -1,21 +1,9 @@
 #include "bake/scene/lobe_record.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include <algorithm>
-
 namespace opaline::bake {
-
-formats::Wrap to_wrap(formats::TextureWrap wrap) {
-    switch (wrap) {
-        case formats::TextureWrap::clamp:
-            return formats::Wrap::clamp;
-        case formats::TextureWrap::mirror:
-            return formats::Wrap::mirror;
-        default:
-            return formats::Wrap::repeat;
-    }
-}
 
 formats::GlossRecord make_lobe_record(const formats::Gloss& gloss) {
     formats::GlossRecord record;
@@ -29,8 +17,8 @@ formats::GlossRecord make_lobe_record(const formats::Gloss& gloss) {
     record.f90 = gloss.specular;
     if (gloss.image != formats::kNone) {
         record.image = gloss.image;
-        record.wrap_u = to_wrap(gloss.wrap_u);
-        record.wrap_v = to_wrap(gloss.wrap_v);
+        record.wrap_u = gloss.wrap_u;
+        record.wrap_v = gloss.wrap_v;
     }
     return record;
 }

@@ -9,6 +9,8 @@
 
 #include "bake/scene/body_shells.h"
 #include "bake/scene/cancel_flaps.h"
+#include "bake/scene/coverage.h"
+#include "bake/scene/weld_seams.h"
 
 namespace opaline::bake {
 namespace {
@@ -129,11 +131,129 @@ void turn_normals(const BodyShells& body, Scene& scene) {
     }
     for (std::size_t p = 0; p < facing.size(); ++p) {
         std::vector<glm::vec3>& normal = scene.primitives[p].normal;
+        std::vector<glm::vec4>& tangent = scene.primitives[p].tangent;
         for (std::size_t v = 0; v < facing[p].size(); ++v) {
             if (glm::dot(facing[p][v], glm::dvec3(normal[v])) < 0) {
                 normal[v] = -normal[v];
+                if (!tangent.empty()) tangent[v] = -tangent[v];  // and its sign: bitangents, too
             }
         }
+    }
+}
+
+// What the result may change of the scene.
+Scene& changed(const Scene& given, OrientedBodies& result) {
+    if (!result.scene) {
+        result.scene = given;
+    }
+    return *result.scene;
+}
+
+const Scene& latest(const Scene& given, const OrientedBodies& result) {
+    return result.scene ? *result.scene : given;
+}
+
+// Gives the scene the direction of the body's triangles. Returns how many are turned.
+std::uint64_t apply_turns(const BodyShells& body, const Scene& given, OrientedBodies& result) {
+    std::uint64_t turned = 0;
+    for (const BodyTriangle& t : body.triangle) {
+        if (t.turned) {
+            std::vector<std::uint32_t>& index =
+                changed(given, result).primitives[t.primitive].index;
+            std::swap(index[t.first_index + 1], index[t.first_index + 2]);
+            ++turned;
+        }
+    }
+    if (turned > 0) {
+        turn_normals(body, *result.scene);
+    }
+    return turned;
+}
+
+std::vector<bool> choose_materials(const Scene& scene,
+                                   bool (*wants)(const formats::Material& material)) {
+    std::vector<bool> chosen;
+    for (const formats::Material& material : scene.materials) {
+        chosen.push_back(wants(material));
+    }
+    return chosen;
+}
+
+bool is_double_sided_opaque(const formats::Material& material) {
+    return material.double_sided && !material.medium && !material.sheet;
+}
+
+// Points that tell whether a closed shell has something inside: a vertex of each other shell, some
+// of each other primitive, all lights.
+std::vector<glm::dvec3> places_of_others(const Scene& scene, const std::vector<bool>& chosen) {
+    constexpr std::size_t kPlaces = 64;  // of a primitive
+    std::vector<glm::dvec3> places;
+    for (const Primitive& p : scene.primitives) {
+        if (chosen[p.material]) continue;
+        const std::size_t step = 1 + p.position.size() / kPlaces;
+        for (std::size_t v = 0; v < p.position.size(); v += step) {
+            places.emplace_back(p.position[v]);
+        }
+    }
+    for (const formats::Light& light : scene.lights) {
+        if (light.type != formats::Light::Type::directional) places.emplace_back(light.position);
+    }
+    return places;
+}
+
+bool has_something_inside(const BodyShells& body, const BodyShell& shell,
+                          const std::vector<glm::dvec3>& places, std::uint64_t& work_left) {
+    constexpr std::uint64_t kBoxes = 8;  // tests that take as long as one of a triangle
+    const std::uint64_t boxes = (places.size() + body.shell.size()) / kBoxes;
+    if (work_left < boxes) return true;  // two sides are right in any case
+    work_left -= boxes;
+    std::vector<Corners> triangles;
+    const auto is_inside = [&](glm::dvec3 place) {
+        if (!glm::all(glm::greaterThan(place, shell.low)) ||
+            !glm::all(glm::lessThan(place, shell.high))) {
+            return false;
+        }
+        if (work_left < shell.count) return true;
+        work_left -= shell.count;
+        if (triangles.empty()) triangles = corners_of(body, shell);
+        return encloses(triangles, place);
+    };
+    return std::ranges::any_of(places, is_inside) ||
+           std::ranges::any_of(body.shell, [&](const BodyShell& other) {
+               return &other != &shell &&
+                      is_inside(body.position[body.triangle[body.order[other.first]].point[0]]);
+           });
+}
+
+// Viewers light and show both sides of a double-sided surface. Of a closed one with nothing inside
+// only the outside can be seen: it has the row, whichever way the faces point.
+void settle_double_sided(const Scene& given, OrientedBodies& result) {
+    const std::vector<bool> chosen = choose_materials(given, is_double_sided_opaque);
+    if (std::ranges::find(chosen, true) == chosen.end()) return;
+    BodyShells body = make_body_shells(latest(given, result), chosen);
+    const std::vector<glm::dvec3> places = places_of_others(given, chosen);
+    std::vector<bool> has_two_sides(chosen.size(), false);
+    std::uint64_t work_left = 100'000'000;  // a second or two
+    for (const BodyShell& shell : body.shell) {
+        const auto material_of = [&](std::uint32_t i) {
+            return given.primitives[body.triangle[body.order[i]].primitive].material;
+        };
+        bool is_whole = !shell.is_open;
+        for (std::uint32_t i = shell.first; is_whole && i < shell.first + shell.count; ++i) {
+            is_whole = !has_holes(given.materials[material_of(i)]);
+        }
+        if (is_whole && !has_something_inside(body, shell, places, work_left)) {
+            if (has_volume(shell) && shell.volume < 0) turn(body, shell);
+            continue;
+        }
+        for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
+            body.triangle[body.order[i]].turned = false;
+            has_two_sides[material_of(i)] = true;
+        }
+    }
+    apply_turns(body, given, result);
+    for (std::size_t m = 0; m < has_two_sides.size(); ++m) {
+        if (has_two_sides[m]) changed(given, result).materials[m].sheet.emplace();
     }
 }
 
@@ -141,38 +261,30 @@ void turn_normals(const BodyShells& body, Scene& scene) {
 
 OrientedBodies orient_bodies(const Scene& scene) {
     OrientedBodies result;
+    for (WeldedVertices& welded :
+         weld_seams(scene, choose_materials(scene, [](const formats::Material& material) {
+                        return material.medium || is_double_sided_opaque(material);
+                    }))) {
+        changed(scene, result).primitives[welded.primitive].position = std::move(welded.position);
+    }
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         if (!scene.materials[m].medium) {
             continue;
         }
-        const Flaps flaps = find_flaps(scene, m);
+        const Flaps flaps = find_flaps(latest(scene, result), m);
         if (flaps.pairs > 0) {
-            if (!result.scene) {
-                result.scene = scene;
-            }
-            remove_flaps(flaps, *result.scene);
+            remove_flaps(flaps, changed(scene, result));
         }
-        BodyShells body = make_body_shells(result.scene ? *result.scene : scene, m);
+        BodyShells body = make_body_shells(latest(scene, result), m);
         if (body.triangle.empty()) {
             continue;
         }
         turn_shells_outward(body);
         BodySurface surface{m, 0, body.open_edges, flaps.pairs};
-        for (const BodyTriangle& t : body.triangle) {
-            if (t.turned) {
-                if (!result.scene) {
-                    result.scene = scene;
-                }
-                std::vector<std::uint32_t>& index = result.scene->primitives[t.primitive].index;
-                std::swap(index[t.first_index + 1], index[t.first_index + 2]);
-                ++surface.turned;
-            }
-        }
-        if (surface.turned > 0) {
-            turn_normals(body, *result.scene);
-        }
+        surface.turned = apply_turns(body, scene, result);
         result.surfaces.push_back(surface);
     }
+    settle_double_sided(scene, result);
     return result;
 }
 

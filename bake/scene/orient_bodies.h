@@ -26,14 +26,16 @@ struct OrientedBodies {
 
 /// Turns the triangles of media that face inward, and the normals of their vertices with them
 /// (README.md, "Orientation"): the medium lies behind its triangles, so a body turned
-/// inside out would be black.
+/// inside out would be black. Of double-sided opaque surfaces, closed shells with nothing inside
+/// are turned outward, too; where a material has others, it becomes a sheet that transmits nothing,
+/// which has light on each of its sides.
 ///
-/// Vertices at one position are one point. Triangles that share an edge with exactly one other form
-/// a shell. A shell is turned to the direction of its larger area, then to a positive volume. A
-/// shell inside another of the same material keeps its direction relative to that one; facing the
-/// other way makes it a cavity. Flaps (cancel_flaps.h) are removed first. Shells without volume
-/// (sheets) and triangles without area stay as they are. An edge is open if an odd number of
-/// triangles meet there.
+/// Seams that rounding opened are closed (weld_seams.h). Vertices at one position are one point.
+/// Triangles that share an edge with exactly one other form a shell. A shell is turned to the
+/// direction of its larger area, then to a positive volume. A shell inside another of the same
+/// material keeps its direction relative to that one; facing the other way makes it a cavity. Flaps
+/// (cancel_flaps.h) are removed first. Shells without volume (sheets) and triangles without area
+/// stay as they are. An edge is open if an odd number of triangles meet there.
 OrientedBodies orient_bodies(const formats::Scene& scene);
 
 /// Warnings about surfaces that were turned, have flaps or do not close.

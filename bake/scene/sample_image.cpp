@@ -23,6 +23,7 @@ const std::array<float, 256>& linear_codes() {
 }
 
 std::uint32_t wrap(std::int64_t i, std::int64_t size, TextureWrap mode) {
+    mode = formats::edge_of(mode);
     if (mode == TextureWrap::clamp) {
         i = i < 0 ? 0 : i >= size ? size - 1 : i;
     } else if (mode == TextureWrap::repeat) {
@@ -43,8 +44,12 @@ glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv) {
     if (!(std::abs(uv.x) < kLargest) || !(std::abs(uv.y) < kLargest)) {
         uv = glm::vec2(0);
     }
-    const float x = uv.x * static_cast<float>(image.width) - 0.5f;
-    const float y = uv.y * static_cast<float>(image.height) - 0.5f;
+    const auto place = [](float u, std::uint32_t size, TextureWrap mode) {
+        const float scaled = u * static_cast<float>(size);
+        return formats::is_nearest(mode) ? std::floor(scaled) : scaled - 0.5f;
+    };
+    const float x = place(uv.x, image.width, lookup.wrap_u);
+    const float y = place(uv.y, image.height, lookup.wrap_v);
     const float x0 = std::floor(x), y0 = std::floor(y), s = x - x0, t = y - y0;
     const auto at = [&](int dx, int dy) {
         const std::uint32_t column =

@@ -46,7 +46,7 @@ struct TextureFacts {
 struct MaterialFacts {
     double triangles = 0, receivers = 0;
     double area = 0;                     ///< [m^2]
-    double volume = 0;                   ///< [m^3] of closed parts; meaningless for open ones
+    double volume = 0;                   ///< [m^3]; meaningless without has_thickness()
     double mean_edge = 0;                ///< [m]
     glm::vec3 low{1e30f}, high{-1e30f};  ///< bounds [m]
 
@@ -55,8 +55,15 @@ struct MaterialFacts {
     std::uint32_t convex_parts = 0;  ///< whose points all lie on their hull, within kMostElevation
     std::uint64_t open_edges = 0;    ///< where an odd number of triangles meet
     bool is_closed() const { return triangles > 0 && open_edges == 0; }
-    /// Whether volume and area say how thick it is. An open body may be a sheet: only rays tell.
-    bool has_thickness() const { return is_closed() && area > 0 && volume != 0; }
+    /// Bound on the area of holes over that of the surface: of a circle as long as all open edges.
+    double holes = 0;
+    /// Whether volume and area say how thick it is. A body with large holes may be a sheet: only
+    /// rays tell. Small ones change the volume by a few percent, as it is taken from a point of the
+    /// surface.
+    bool has_thickness() const {
+        constexpr double kSmall = 0.1;
+        return triangles > 0 && holes < kSmall && area > 0 && volume != 0;
+    }
 
     Horizon horizon;
 

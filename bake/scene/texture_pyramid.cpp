@@ -66,6 +66,7 @@ Level halved(std::uint32_t width, std::uint32_t height, const Texel& texel) {
 
 // A coordinate as one in [0, 1] with the same texels.
 float folded(float u, TextureWrap mode) {
+    mode = formats::edge_of(mode);
     constexpr float kLargest = 1e6f;  // as of sample_image
     if (!(std::abs(u) < kLargest)) {
         return 0;
@@ -89,7 +90,7 @@ Neighbours neighbours(float u, std::uint32_t size, TextureWrap mode) {
     const float x = u * static_cast<float>(size) - 0.5f, floor = std::floor(x);
     const auto low = static_cast<std::int32_t>(floor);
     const auto last = static_cast<std::int32_t>(size) - 1;
-    const bool repeats = mode == TextureWrap::repeat;
+    const bool repeats = formats::edge_of(mode) == TextureWrap::repeat;
     return {static_cast<std::uint32_t>(low >= 0  ? std::min(low, last)
                                        : repeats ? last
                                                  : 0),

@@ -1,4 +1,4 @@
-#include "bake/slab/cosine_sampler.h"
+#include "bake/slab/slab_walk.h"
 
 #include <algorithm>
 #include <cassert>

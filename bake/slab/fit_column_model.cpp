@@ -1,16 +1,73 @@
 #include "bake/slab/fit_column_model.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 
-#include "bake/slab/least_squares.h"
 #include "bake/slab/solve_slab.h"
 
 namespace opaline::bake {
 namespace {
 
 using Eigen::VectorXd;
+
+/// A place where the sum of squares is least, found from a start.
+struct LeastSquares {
+    Eigen::VectorXd parameters;
+    double rms = 0;      ///< of the residuals there
+    double largest = 0;  ///< of their absolute values
+};
+
+/// Levenberg's damped Gauss-Newton steps with difference quotients, at most 200 of them, until a
+/// step lowers the sum by less than 1e-12 of itself. Parameters stay within the box. `residuals`
+/// must be finite there, and of one length.
+LeastSquares minimise_squares(
+    const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& residuals,
+    const Eigen::VectorXd& start, const Eigen::VectorXd& least, const Eigen::VectorXd& most) {
+    constexpr int kMostSteps = 200;
+    constexpr double kDifference = 1e-6, kEnough = 1e-12, kMostDamping = 1e12;
+    const auto inside = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+        return x.cwiseMax(least).cwiseMin(most);
+    };
+    Eigen::VectorXd at = inside(start), value = residuals(at);
+    double damping = 1e-3;
+    for (int step = 0; step < kMostSteps && damping < kMostDamping; ++step) {
+        Eigen::MatrixXd slope(value.size(), at.size());
+        for (Eigen::Index i = 0; i < at.size(); ++i) {
+            Eigen::VectorXd beside = at;
+            const double shift = kDifference * std::max(1.0, std::abs(at[i]));
+            beside[i] += beside[i] + shift <= most[i] ? shift : -shift;
+            slope.col(i) = (residuals(beside) - value) / (beside[i] - at[i]);
+        }
+        const Eigen::MatrixXd normal = slope.transpose() * slope;
+        const Eigen::VectorXd gradient = slope.transpose() * value;
+        const double before = value.squaredNorm();
+        double after = before;
+        while (after >= before && damping < kMostDamping) {
+            Eigen::MatrixXd damped = normal;
+            damped.diagonal() += damping * (normal.diagonal().array() + 1e-300).matrix();
+            const Eigen::VectorXd next = inside(at - damped.ldlt().solve(gradient));
+            const Eigen::VectorXd there = residuals(next);
+            after = there.squaredNorm();
+            if (after < before) {
+                at = next;
+                value = there;
+                damping /= 10;
+            } else {
+                damping *= 10;
+            }
+        }
+        if (before - after <= kEnough * before) {
+            break;
+        }
+    }
+    return {at, std::sqrt(value.squaredNorm() / static_cast<double>(value.size())),
+            value.cwiseAbs().maxCoeff()};
+}
 
 // Thick layers: T of even light is 1 / (1 + 0.75 (1 - g) depth) but for the extrapolation length,
 // 1.4209 mean free paths of transport on both sides together, and beta is K(mu) / 1.066 with the

@@ -36,14 +36,21 @@ void pass_holes(const RTCFilterFunctionNArguments* arguments) {
         if (arguments->valid[i] == 0) {
             continue;
         }
-        const Passage passage{
-            {RTCRayN_org_x(arguments->ray, n, i), RTCRayN_org_y(arguments->ray, n, i),
-             RTCRayN_org_z(arguments->ray, n, i)},
-            {RTCRayN_dir_x(arguments->ray, n, i), RTCRayN_dir_y(arguments->ray, n, i),
-             RTCRayN_dir_z(arguments->ray, n, i)},
-            RTCRayN_id(arguments->ray, n, i),
-            holes.primitive,
-            RTCHitN_primID(arguments->hit, n, i)};
+        Passage passage{{RTCRayN_org_x(arguments->ray, n, i), RTCRayN_org_y(arguments->ray, n, i),
+                         RTCRayN_org_z(arguments->ray, n, i)},
+                        {RTCRayN_dir_x(arguments->ray, n, i), RTCRayN_dir_y(arguments->ray, n, i),
+                         RTCRayN_dir_z(arguments->ray, n, i)},
+                        RTCRayN_id(arguments->ray, n, i),
+                        holes.primitive,
+                        RTCHitN_primID(arguments->hit, n, i)};
+        if (holes.coverage.clear > 0) {
+            const glm::vec3 normal(RTCHitN_Ng_x(arguments->hit, n, i),
+                                   RTCHitN_Ng_y(arguments->hit, n, i),
+                                   RTCHitN_Ng_z(arguments->hit, n, i));
+            const float length = glm::length(normal) * glm::length(passage.direction);
+            passage.cosine =
+                length > 0 ? std::abs(glm::dot(normal, passage.direction)) / length : 0.0f;
+        }
         const float u = RTCHitN_u(arguments->hit, n, i), v = RTCHitN_v(arguments->hit, n, i);
         if (!meets_surface(holes.coverage, passage, u, v)) {
             arguments->valid[i] = 0;
@@ -108,7 +115,8 @@ EmbreeScene::~EmbreeScene() {
     }
 }
 
-formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned threads) {
+formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned threads,
+                                                bool filters) {
     EmbreeScene built;
     const auto failed = [&](const char* what) {
         return formats::make_error(ErrorKind::resource, scene.source, "ray tracer", what,
@@ -119,7 +127,9 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
         return failed("the Embree device cannot be made");
     }
     built.scene_ = rtcNewScene(built.device_);
-    rtcSetSceneFlags(built.scene_, RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneFlags(built.scene_,
+                     filters ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
+                             : RTC_SCENE_FLAG_ROBUST);
     rtcSetSceneBuildQuality(built.scene_, RTC_BUILD_QUALITY_HIGH);
     CoverageImages images;
     for (std::uint32_t number = 0; number < scene.primitives.size(); ++number) {
@@ -136,8 +146,7 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
         }
         PrimitiveHoles* holes = nullptr;
         if (auto coverage = make_coverage(scene, number, images)) {
-            built.has_chances_ =
-                built.has_chances_ || coverage->mode == formats::Material::AlphaMode::blend;
+            built.has_chances_ = built.has_chances_ || coverage->has_chances();
             built.holes_.push_back(
                 std::make_unique<PrimitiveHoles>(PrimitiveHoles{number, std::move(*coverage)}));
             holes = built.holes_.back().get();

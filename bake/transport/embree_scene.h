@@ -24,8 +24,10 @@ struct PrimitiveHoles;
 class EmbreeScene {
   public:
     /// Builds the hierarchy with `threads` threads (0: all). A scene without triangles is valid:
-    /// the open sky. Errors: resource.
-    static formats::Result<EmbreeScene> build(const formats::Scene& scene, unsigned threads);
+    /// the open sky. `filters`: rays may bring a filter of their own (RTCIntersectContext::filter).
+    /// Errors: resource.
+    static formats::Result<EmbreeScene> build(const formats::Scene& scene, unsigned threads,
+                                              bool filters = false);
 
     EmbreeScene(EmbreeScene&& other) noexcept;
     EmbreeScene& operator=(EmbreeScene&& other) noexcept;

@@ -40,8 +40,6 @@ struct OtherLight {
     std::function<std::uint64_t(const LitPoint& point, std::uint32_t cubemap_size,
                                 std::span<float> rows)>
         add;
-    /// 3, or 1: the three coincide. With 3, rows of all receivers have three bands as well
-    /// (RowLayout::coloured).
     /// For truths, by a way that shares nothing with `add`: adds the luminance of the irradiance
     /// under each of the lights, the mean of `count` independent samples keyed by `key`.
     using TrueIrradiance = std::function<std::uint64_t(
@@ -64,6 +62,8 @@ struct OtherLight {
     /// As make_truth; `along`: origin and direction of the view. Empty where `add_seen` is.
     std::function<TrueView(std::span<const TestLight> lights)> make_seen_truth{};
     std::string_view name{};  ///< of what makes it, for reports
+    /// 3, or 1 where the three coincide. With 3, rows of all receivers have three bands as well
+    /// (RowLayout::coloured).
     std::uint32_t bands = 3;
     bool environment = true;  ///< that of the environment counts, too
     /// By material: 1 where it is not worth the rays. Empty: it is everywhere.

@@ -18,8 +18,8 @@ namespace opaline::bake {
 void gather_transmittance(const DensitySpace& space, const LightCells& cells, glm::vec3 position,
                           std::span<float> out);
 
-/// Attenuated light: V(x, l) = e^-(optical depth from x toward l), 0 where a surface stands before
-/// the light; `out` as of gather_transmittance. Returns the rays traced.
+/// Attenuated light: V(x, l) = e^-(optical depth from x toward l), 0 where a surface blocks the
+/// light; `out` as of gather_transmittance. Returns the rays traced.
 std::uint64_t gather_attenuation(const DensitySpace& space, const RayScene& rays,
                                  const LightCells& cells, glm::vec3 position, std::span<float> out);
 

@@ -27,10 +27,10 @@ struct GlowJob {
     std::uint64_t seed = 0;
 };
 
-/// Light that volumes send out by themselves, of all layouts that do, and what the nodes of all
-/// scatter of it. `emitter` of a record is the number among glowing layouts, `volume` that among
-/// layouts. The same bits for any number of threads; empty once the context is cancelled. Adds the
-/// rays traced to `rays`.
+/// Light that glowing volumes emit, and the part of it that the nodes of all volumes scatter.
+/// `emitter` of a record is the number among glowing layouts, `volume` that among layouts. The same
+/// bits for any number of threads; empty once the context is cancelled. Adds the rays traced to
+/// `rays`.
 formats::Glow bake_glow(const GlowJob& job, const Context& context, std::uint64_t& rays);
 
 }  // namespace opaline::bake

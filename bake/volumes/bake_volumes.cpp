@@ -18,6 +18,7 @@
 #include "bake/volumes/phase_table.h"
 #include "bake/volumes/seen_surfaces.h"
 #include "bake/volumes/share_details.h"
+#include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
 #include "bake/volumes/volume_walks.h"
@@ -118,7 +119,7 @@ formats::Result<formats::SparseRows> gather_node_rows(
     const VolumeWalkSpace walks{nodes.space, given.rays,   nodes.lattices,   nodes.first,
                                 lit.depths,  nodes.coarse, given.knobs.seed, seen};
     const PathCells groups = group_cells(nodes.coarse);
-    // Paths know one phase function; where there are several, the plan takes walks.
+    // Paths support one phase function. With several the plan takes walks.
     const VolumePathSpace paths{walks, groups, nodes.space.volumes.front().phase.moments(),
                                 path_lengths(given.knobs.quality)};
     const std::vector<VolumeLayout> layouts = decide_methods(given, paths, measured);
@@ -164,7 +165,7 @@ formats::Result<formats::SparseRows> gather_node_rows(
                          nodes.scattered.front().selector, pools);
 }
 
-// Where each volume's rows stand, now that they are there.
+// Sets the first row of each volume, once all rows are packed.
 void number_rows(const VolumeJob& job, const PlacedNodes& nodes, formats::Volumes& volumes) {
     std::uint32_t row = 0, band_row = 0;
     std::uint64_t code = 0;
@@ -208,7 +209,7 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
     const bool sees = job.surfaces != nullptr && sees_surfaces(job.layouts);
     if (sees && seen_surfaces_bytes(*job.surfaces, nodes.space.bands(), nodes.coarse.size()) >
                     kDepthBytes) {
-        return make_error(ErrorKind::resource, "", "surface-volume",
+        return make_error(ErrorKind::resource, "", std::string(kSurfacesToVolumes),
                           "light of so many vertices takes more memory than walks may have",
                           "name the other effects in --effects, or make the meshes coarser");
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_work.h"
 
@@ -14,7 +15,7 @@ constexpr std::size_t kCompared = 24;  // nodes
 
 PlanEntry* find_often(std::span<PlanEntry> entries, std::uint32_t volume) {
     const auto found = std::ranges::find_if(entries, [&](const PlanEntry& entry) {
-        return entry.on && entry.name == "volume-multiple" && entry.subject.index == volume;
+        return entry.on && entry.name == kOftenInVolumes && entry.subject.index == volume;
     });
     return found == entries.end() ? nullptr : &*found;
 }
@@ -87,7 +88,7 @@ void plan_methods(const formats::Scene& scene, const Knobs& knobs, std::span<Vol
                 char text[96];
                 std::snprintf(text, sizeof text,
                               "random walks: paths would take %.2g times the work", times);
-                why = text;
+                why = times > 1.05 ? text : "random walks, which take no more work than paths";
             } else {
                 why = "path integration if the bake measures at most " +
                       percent(method_budget(knobs)) + " of error, else random walks";

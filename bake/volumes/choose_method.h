@@ -15,10 +15,10 @@ namespace opaline::bake {
 /// of directions along a path is that of one.
 bool share_phase(const formats::Scene& scene);
 
-/// Decides each layout's method as far as nothing need be traced. `--volume-method` says it, or
-/// `auto`: walks where they take no more work than paths, which are counted; else
-/// VolumeMethod::automatic, left to `measure_method`. Entries are those of plan_volumes; the ones
-/// of light scattered more than once get choices and reasons.
+/// Decides each layout's method without tracing rays: the one of `--volume-method`, or with `auto`
+/// walks where they take no more work than paths, by count; else VolumeMethod::automatic, which
+/// `measure_method` resolves. Entries are those of plan_volumes; the ones of light scattered more
+/// than once get choices and reasons.
 void plan_methods(const formats::Scene& scene, const Knobs& knobs, std::span<VolumeLayout> layouts,
                   std::span<PlanEntry> entries);
 
@@ -26,9 +26,8 @@ void plan_methods(const formats::Scene& scene, const Knobs& knobs, std::span<Vol
 /// 0.05 and 0 by quality, draft to reference.
 double method_budget(const Knobs& knobs);
 
-/// How far rows of two ways differ, and how much noise walks have; squares relative to those of the
-/// light itself, over all views, directions of light and bands alike, and over
-/// nodes by their density.
+/// Difference between the rows of both methods, and noise of walks: squares relative to those of
+/// the light itself, over all views, directions of light and bands, and over nodes by density.
 struct MethodMeasure {
     std::uint32_t volume = 0;
     VolumeMethod method = VolumeMethod::walks;  ///< that was taken

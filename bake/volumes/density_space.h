@@ -14,11 +14,11 @@
 
 namespace opaline::bake {
 
-/// Optical depth of a voxel beyond which light is followed as if it were this: what happens then
-/// within a hundredth of a voxel no grid can show, and flights would never end.
+/// Largest optical depth of a voxel; larger ones are clamped. No grid resolves a hundredth of a
+/// voxel, and flights would never end.
 inline constexpr float kMostDepth = 64;
 
-/// A volume as light is followed through it. Coefficients are those without the forward peak.
+/// A volume for tracing. Coefficients are those without the forward peak.
 struct DensityVolume {
     const formats::SparseGrid<float>* grid = nullptr;
     /// Density times albedo where that varies; null: `albedo` holds everywhere.

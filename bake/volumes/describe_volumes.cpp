@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "bake/volumes/calibrate_volumes.h"
+#include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 
 namespace opaline::bake {
@@ -16,16 +16,15 @@ constexpr std::array<const KnobSpec*, 4> kKnobsOften{&kVolumeMethod, &kVolumeWal
 
 EffectDescriptor describe_scattered_once(Effect id) {
     return {.id = id,
-            .name = "volume-single",
+            .name = kOnceInVolumes,
             .help = "light scattered once in smoke or clouds",
             .knobs = kKnobsOnce,
-            .concerns_volumes = true,
-            .calibrate = calibrate_volumes};
+            .concerns_volumes = true};
 }
 
 EffectDescriptor describe_scattered_often(Effect id) {
     return {.id = id,
-            .name = "volume-multiple",
+            .name = kOftenInVolumes,
             .help = "light scattered more than once in smoke or clouds",
             .knobs = kKnobsOften,
             .concerns_volumes = true};
@@ -33,14 +32,14 @@ EffectDescriptor describe_scattered_often(Effect id) {
 
 EffectDescriptor describe_sent_light(Effect id) {
     return {.id = id,
-            .name = "volume-surface",
+            .name = kVolumesToSurfaces,
             .help = "light that smoke or clouds scatter to surfaces",
             .concerns_volumes = true};
 }
 
 EffectDescriptor describe_seen_light(Effect id) {
     return {.id = id,
-            .name = "surface-volume",
+            .name = kSurfacesToVolumes,
             .help = "light that surfaces send to smoke or clouds",
             .concerns_volumes = true};
 }

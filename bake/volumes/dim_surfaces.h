@@ -19,14 +19,14 @@ struct VertexLight {
     std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
 };
 
-/// The asset with the transport of each vertex multiplied by what volumes let through from each
-/// direction to the vertex, and with what they scatter to it, where `sent` is not null. Exact for
-/// light that a surface reflects; light that enters a body is taken to come through where it
-/// leaves. Scattered light that enters a body is taken to be even over its mean free path: a row
-/// answers to it as to even light of the sky, for each unit of irradiance. Rows of one band get
-/// three where extinctions differ by band, or scattered light does. The primitives are those of the
-/// scene, in order. Counts `rays`. Errors: resource (more than 2^32 coefficients). Stops early,
-/// with rows missing, once the context is cancelled.
+/// The asset with the transport of each vertex multiplied by the transmittance of volumes from each
+/// direction to the vertex, plus the light that they scatter to it where `sent` is not null. Exact
+/// for light that a surface reflects; light that enters a body is assumed to enter where it leaves.
+/// Scattered light is assumed to be even over the mean free path of a body: a row responds to its
+/// irradiance as to that of an even sky. Rows of one band get three where extinctions or scattered
+/// light differ by band. The primitives are those of the scene, in order. Counts `rays`. Errors:
+/// resource (more than 2^32 coefficients). Stops early, with rows missing, once the context is
+/// cancelled.
 formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
                              const VertexLight* sent, const Context& context, formats::Asset& asset,
                              std::uint64_t& rays);

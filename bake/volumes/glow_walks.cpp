@@ -19,8 +19,8 @@ struct Bands {
 };
 
 // Adds to `sum`, one for each grid, the light that arrives at a point from a direction: a walk
-// against the light gathers what is sent out along each of its flights. Track length is an unbiased
-// estimate, also where there is light without density.
+// against the light gathers the emission along each of its flights. The track length is an unbiased
+// estimate, also where emission has no density.
 std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::vec3 at,
                           glm::vec3 direction, FlightRandom& random, std::span<glm::vec3> sum) {
     std::uint64_t traced = 0;

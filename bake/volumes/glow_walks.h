@@ -18,7 +18,7 @@ struct GlowWalkSpace {
     std::uint64_t seed = 0;
 };
 
-/// Where what is scattered of that light is wanted.
+/// A point at which the scattered part of that light is estimated.
 struct GlowReceiver {
     std::uint32_t volume = 0;
     std::size_t node = 0;      ///< the random numbers depend on it

@@ -28,12 +28,12 @@ double largest_sent_light(const formats::Scene& scene, const formats::Volume& vo
 /// The share of light that surfaces of a scene send on at most, in any band; 0 without surfaces.
 SentShare largest_share_of_surfaces(const formats::Scene& scene);
 
-/// An upper bound [W m^-2 sr^-1] on what a volume sends out by itself along any straight line, over
-/// all bands; 0 of one that does not glow.
+/// An upper bound [W m^-2 sr^-1] on the emission of a volume along any straight line, over all
+/// bands; 0 if it does not glow.
 double largest_glow(const formats::Volume& volume);
 
-/// An upper bound [W m^-2 sr^-1] on that light with what all volumes of a scene scatter of it: with
-/// s the largest albedo times 1 - e^-tau of all, glow / (1 - s).
+/// An upper bound [W m^-2 sr^-1] on that light with all its scattering in the volumes of a scene:
+/// with s the largest albedo times 1 - e^-tau of all, glow / (1 - s).
 double largest_scattered_glow(const formats::Scene& scene, const formats::Volume& volume);
 
 }  // namespace opaline::bake

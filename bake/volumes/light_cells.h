@@ -24,7 +24,7 @@ std::vector<float> reduce_cells(const std::vector<float>& values, std::uint32_t 
                                 std::uint32_t coarse);
 
 /// Haar coefficients of a cube map of n x n texels, made of the texel values of one of m x m, m <=
-/// n: every value stands for (n / m)^2 texels. `values`: 6 m m; result: 6 n n.
+/// n: every value covers (n / m)^2 texels. `values`: 6 m m; result: 6 n n.
 std::vector<float> transform_cells(std::vector<float> values, std::uint32_t m, std::uint32_t n);
 
 }  // namespace opaline::bake

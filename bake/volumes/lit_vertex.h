@@ -21,7 +21,7 @@ struct LitVertex {
 LitVertex light_vertex(const SentLight& light, const ReceiverSet& set, std::size_t vertex,
                        formats::Shading shading);
 
-/// What a row makes of the irradiance on either side of its vertex: radiance per irradiance.
+/// Response of a row to the irradiance on either side of its vertex: radiance per irradiance.
 struct LitRow {
     float front = 0, back = 0;
 };
@@ -30,7 +30,7 @@ struct LitRow {
 LitRow answer_of_surface(const formats::Material& material, std::uint32_t term, std::uint32_t band,
                          std::uint32_t bands);
 
-/// Of a medium: what the row makes of an even sky, by irradiance; `texels` are the row's values
+/// Of a medium: the row's response to an even sky per irradiance; `texels` are the row's values
 /// before volumes dim them, `solid_angles` those of a face of their cube map.
 LitRow answer_of_medium(std::span<const float> texels, std::span<const double> solid_angles,
                         float open);

@@ -15,8 +15,8 @@ namespace opaline::bake {
 /// shares, linear between nodes, scatter as much as all voxels do.
 std::vector<glm::vec3> node_albedo_shares(const DensityVolume& volume, const NodeLattice& lattice);
 
-/// How far albedos between nodes are from those of voxels: RMS weighted by density, relative to the
-/// RMS of these; 0 where one holds everywhere. At most 1024 bricks are looked at. `spacing` as in
+/// Error of albedos interpolated between nodes: RMS difference to the voxels, weighted by density,
+/// relative to their RMS; 0 for a constant albedo. At most 1024 bricks are sampled. `spacing` as in
 /// NodeLattice.
 double lost_albedo_detail(const DensityVolume& volume, std::uint32_t spacing);
 

@@ -1,8 +1,9 @@
 #include "bake/volumes/node_lattice.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <unordered_map>
+#include <cstddef>
 
 #include "formats/opal/volumes.h"
 
@@ -10,20 +11,6 @@ namespace opaline::bake {
 namespace {
 
 using Grid = formats::SparseGrid<float>;
-
-// Whether any voxel from `low` to `high`, both included, has density.
-bool has_density(const Grid& grid, glm::ivec3 low, glm::ivec3 high) {
-    for (int z = low.z; z <= high.z; ++z) {
-        for (int y = low.y; y <= high.y; ++y) {
-            for (int x = low.x; x <= high.x; ++x) {
-                if (grid.at({x, y, z}) > 0) {
-                    return true;
-                }
-            }
-        }
-    }
-    return false;
-}
 
 // Whether any of the voxels 8 b .. 8 b + 8 sends out light.
 bool reaches_glow(const formats::SparseGrid<glm::vec3>& glow, glm::ivec3 brick) {
@@ -36,30 +23,51 @@ bool reaches_glow(const formats::SparseGrid<glm::vec3>& glow, glm::ivec3 brick) 
     return false;
 }
 
-struct VoxelHash {
-    std::size_t operator()(const glm::ivec3& v) const {
-        std::uint64_t h = 0;
-        for (int axis = 0; axis < 3; ++axis) {
-            h = (h ^ static_cast<std::uint32_t>(v[axis])) * 0x9e3779b97f4a7c15u;
-            h ^= h >> 29;
-        }
-        return static_cast<std::size_t>(h);
-    }
-};
-
-// Which cells of a brick's lattice have density, x fastest.
+// Which cells of a brick's lattice have density at one of their corners or between, x fastest.
+// Empty: none has.
 std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spacing) {
-    const int cells = Grid::kSide / spacing;
+    std::array<const float*, 8> values{};  // of the brick and those above it, which it reaches
+    bool is_empty = true;
+    for (int c = 0; c < 8; ++c) {
+        const std::uint32_t number = grid.brick_at(brick + glm::ivec3(c & 1, c >> 1 & 1, c >> 2));
+        if (number != Grid::kEmpty) {
+            values[static_cast<std::size_t>(c)] = grid.brick(number).data();
+            is_empty = false;
+        }
+    }
     std::vector<bool> has;
-    for (int z = 0; z < cells; ++z) {
-        for (int y = 0; y < cells; ++y) {
-            for (int x = 0; x < cells; ++x) {
-                const glm::ivec3 low = brick * Grid::kSide + spacing * glm::ivec3(x, y, z);
-                has.push_back(has_density(grid, low, low + spacing));
+    if (is_empty) {
+        return has;
+    }
+    constexpr int kSide = Grid::kSide;
+    const int cells = kSide / spacing;
+    has.resize(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) *
+               static_cast<std::size_t>(cells));
+    is_empty = true;
+    // Both cells that share a voxel have what it has.
+    const auto first = [&](int v) { return std::max(0, (v + spacing - 1) / spacing - 1); };
+    const auto last = [&](int v) { return std::min(cells - 1, v / spacing); };
+    for (int z = 0; z <= kSide; ++z) {
+        for (int y = 0; y <= kSide; ++y) {
+            for (int x = 0; x <= kSide; ++x) {
+                const float* const own = values[static_cast<std::size_t>(
+                    (z / kSide) << 2 | (y / kSide) << 1 | x / kSide)];
+                if (own == nullptr ||
+                    !(own[((z % kSide) * kSide + y % kSide) * kSide + x % kSide] > 0)) {
+                    continue;
+                }
+                is_empty = false;
+                for (int k = first(z); k <= last(z); ++k) {
+                    for (int j = first(y); j <= last(y); ++j) {
+                        for (int i = first(x); i <= last(x); ++i) {
+                            has[static_cast<std::size_t>((k * cells + j) * cells + i)] = true;
+                        }
+                    }
+                }
             }
         }
     }
-    return has;
+    return is_empty ? std::vector<bool>() : has;
 }
 
 bool touches_density(const std::vector<bool>& has, glm::ivec3 corner, int cells) {
@@ -76,6 +84,39 @@ bool touches_density(const std::vector<bool>& has, glm::ivec3 corner, int cells)
     return false;
 }
 
+// Numbers of nodes: (8 / spacing)^3 for each brick that owns one.
+class NodeNumbers {
+  public:
+    NodeNumbers(glm::ivec3 first_brick, glm::ivec3 extent, int spacing)
+        : first_(first_brick), extent_(extent), spacing_(spacing), cells_(Grid::kSide / spacing) {
+        block_.resize(static_cast<std::size_t>(extent.x) * static_cast<std::size_t>(extent.y) *
+                          static_cast<std::size_t>(extent.z),
+                      Grid::kEmpty);
+    }
+    // kNoNode until it is set. Precondition: the voxel's coordinates are multiples of the spacing,
+    // in one of the bricks.
+    std::uint32_t& at(glm::ivec3 voxel) {
+        const glm::ivec3 brick = Grid::brick_of(voxel), b = brick - first_;
+        const auto size = static_cast<std::size_t>(cells_ * cells_ * cells_);
+        std::uint32_t& block = block_[static_cast<std::size_t>(b.z * extent_.y + b.y) *
+                                          static_cast<std::size_t>(extent_.x) +
+                                      static_cast<std::size_t>(b.x)];
+        if (block == Grid::kEmpty) {
+            block = static_cast<std::uint32_t>(number_.size() / size);
+            number_.resize(number_.size() + size, formats::kNoNode);
+        }
+        const glm::ivec3 c = (voxel - brick * Grid::kSide) / spacing_;
+        return number_[block * size +
+                       static_cast<std::size_t>((c.z * cells_ + c.y) * cells_ + c.x)];
+    }
+
+  private:
+    glm::ivec3 first_, extent_;
+    int spacing_, cells_;
+    std::vector<std::uint32_t> block_;  // of bricks, x fastest
+    std::vector<std::uint32_t> number_;
+};
+
 }  // namespace
 
 NodeLattice make_node_lattice(const Grid& grid, std::uint32_t spacing,
@@ -85,14 +126,14 @@ NodeLattice make_node_lattice(const Grid& grid, std::uint32_t spacing,
     lattice.first_brick = grid.first_brick - 1;
     lattice.extent = grid.extent + 1;
     const int step = static_cast<int>(spacing), cells = Grid::kSide / step;
-    std::unordered_map<glm::ivec3, std::uint32_t, VoxelHash> number;
+    NodeNumbers number(lattice.first_brick, lattice.extent + 1, step);
     glm::ivec3 b;
     for (b.z = 0; b.z < lattice.extent.z; ++b.z) {
         for (b.y = 0; b.y < lattice.extent.y; ++b.y) {
             for (b.x = 0; b.x < lattice.extent.x; ++b.x) {
                 const glm::ivec3 brick = lattice.first_brick + b;
                 const std::vector<bool> has = cells_with_density(grid, brick, step);
-                if (std::ranges::find(has, true) == has.end() && !reaches_glow(glow, brick)) {
+                if (has.empty() && !reaches_glow(glow, brick)) {
                     lattice.table.push_back(formats::kNoBrick);
                     continue;
                 }
@@ -102,17 +143,17 @@ NodeLattice make_node_lattice(const Grid& grid, std::uint32_t spacing,
                 for (c.z = 0; c.z <= cells; ++c.z) {
                     for (c.y = 0; c.y <= cells; ++c.y) {
                         for (c.x = 0; c.x <= cells; ++c.x) {
-                            if (!touches_density(has, c, cells)) {
+                            if (has.empty() || !touches_density(has, c, cells)) {
                                 lattice.corner.push_back(formats::kNoNode);
                                 continue;
                             }
                             const glm::ivec3 voxel = brick * Grid::kSide + c * step;
-                            const auto [at, is_new] = number.try_emplace(
-                                voxel, static_cast<std::uint32_t>(lattice.node.size()));
-                            if (is_new) {
+                            std::uint32_t& node = number.at(voxel);
+                            if (node == formats::kNoNode) {
+                                node = static_cast<std::uint32_t>(lattice.node.size());
                                 lattice.node.push_back(voxel);
                             }
-                            lattice.corner.push_back(at->second);
+                            lattice.corner.push_back(node);
                         }
                     }
                 }

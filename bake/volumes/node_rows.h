@@ -12,7 +12,7 @@ namespace opaline::bake {
 /// How rows of nodes are kept.
 struct NodeEncoder {
     Selector selector;     ///< of the file's cube map; of some rows together M coefficients at most
-    double tolerance = 0;  ///< what may be lost besides: RMS, relative to these rows together
+    double tolerance = 0;  ///< further loss allowed: RMS, relative to these rows together
 };
 
 /// `count` rows of a node from their texel values, `bands` cube maps of m x m texels each. They

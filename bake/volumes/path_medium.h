@@ -9,9 +9,8 @@
 
 namespace opaline::bake {
 
-/// All volumes together, as a medium of `path_integral/`. Paths turn with the scattering of one
-/// band, the one that scatters most; what the other bands meet at the point that was asked for last
-/// is kept.
+/// All volumes together, as a medium of `path_integral/`. Paths turn by the scattering of the band
+/// that scatters most; the coefficients of the other bands at the last queried point are kept.
 class VolumeMedium {
   public:
     /// Refers to the space, which must stay.

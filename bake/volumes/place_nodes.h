@@ -23,7 +23,7 @@ inline constexpr std::size_t kNodesAtOnce = 16;
 /// What volumes are baked from.
 struct VolumeJob {
     const formats::Scene& scene;
-    const RayScene& rays;  ///< surfaces that stand before the light; may be empty
+    const RayScene& rays;  ///< surfaces that block the light; may be empty
     std::span<const VolumeLayout> layouts;
     const Knobs& knobs;
     const ShownSurfaces* surfaces = nullptr;  ///< that send light to volumes; null: black

@@ -15,14 +15,11 @@
 #include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/scaled_phase.h"
+#include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 
 namespace opaline::bake {
 namespace {
-
-constexpr std::string_view kGlowEffect = "emitters";  // a volume that glows is one
-constexpr std::string_view kSentEffect = "volume-surface";
-constexpr std::string_view kSeenEffect = "surface-volume";
 
 // Radiance below which an effect is left out: three decisions of a volume share a quarter of the
 // error.
@@ -30,8 +27,8 @@ double least_bound(const Knobs& knobs) {
     return knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 12) : kLeastBound;
 }
 
-// Light that was scattered before reaches a node nearly from all around, but for its edge: degree l
-// of what it scatters is at most lambda_l of that.
+// Light that was scattered before reaches a node nearly evenly from all around, except at the
+// volume's edge: degree l of the newly scattered light is at most lambda_l of it.
 std::uint32_t choose_terms(const ScaledPhase& phase, const Knobs& knobs) {
     if (const double given = knobs[kVolumeTerms]; given > 0) {
         return std::min(static_cast<std::uint32_t>(given), phase.harmonics());
@@ -107,7 +104,7 @@ std::string tell_evenness(const DensityVolume& volume) {
 double all_glow(const formats::Scene& scene, const Knobs& knobs) {
     double sum = 0;
     for (const formats::Volume& volume : scene.volumes) {
-        sum += is_wanted(knobs, kGlowEffect) ? largest_glow(volume) : 0;
+        sum += is_wanted(knobs, kEmitters) ? largest_glow(volume) : 0;
     }
     return sum;
 }
@@ -119,7 +116,7 @@ double scattered_glow(double glow, double once) {
 }
 
 PlanEntry decide_glow(const formats::Volume& volume, const Subject& subject, const Knobs& knobs) {
-    PlanEntry entry = decide(kGlowEffect, subject, largest_glow(volume), knobs);
+    PlanEntry entry = decide(kEmitters, subject, largest_glow(volume), knobs);
     entry.has_bands = true;
     if (entry.on) {
         entry.reason = "it sends out light by itself, as an emitter";
@@ -133,7 +130,7 @@ PlanEntry decide_glow(const formats::Volume& volume, const Subject& subject, con
 // `scatters`: nodes of the volume have light.
 PlanEntry decide_sent(const formats::Scene& scene, const formats::Volume& volume, bool scatters,
                       const Subject& subject, const Knobs& knobs) {
-    PlanEntry entry = decide(kSentEffect, subject, largest_sent_light(scene, volume), knobs);
+    PlanEntry entry = decide(kVolumesToSurfaces, subject, largest_sent_light(scene, volume), knobs);
     if (entry.on && !scatters) {
         entry.on = entry.forced = false;
         entry.reason = "what the volume scatters is left out";
@@ -148,7 +145,7 @@ PlanEntry decide_sent(const formats::Scene& scene, const formats::Volume& volume
 // Of light 1, surfaces send at most their share to a volume, which scatters at most `once` of it.
 PlanEntry decide_seen(const SentShare& share, double once, const Subject& subject,
                       const Knobs& knobs) {
-    PlanEntry entry = decide(kSeenEffect, subject, share.all * once, knobs);
+    PlanEntry entry = decide(kSurfacesToVolumes, subject, share.all * once, knobs);
     entry.has_bands = !share.is_grey;
     if (entry.on) {
         entry.reason = "the volume scatters what surfaces send to it";
@@ -212,11 +209,11 @@ bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
 }
 
 bool lights_surfaces(std::span<const PlanEntry> plan) {
-    return has_effect(plan, kSentEffect);
+    return has_effect(plan, kVolumesToSurfaces);
 }
 
 bool sees_surfaces(std::span<const PlanEntry> plan) {
-    return has_effect(plan, kSeenEffect);
+    return has_effect(plan, kSurfacesToVolumes);
 }
 
 const char* scattering_stage(std::span<const VolumeLayout> layouts) {
@@ -242,8 +239,8 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         const VolumeBrightness most = brightest(volume);
         const Subject subject{Subject::Kind::volume, v, volume.name};
         const ScaledPhase phase = scale_phase(volume.phase);
-        PlanEntry once = decide("volume-single", subject, most.once, knobs);
-        PlanEntry often = decide("volume-multiple", subject, most.once * most.once, knobs);
+        PlanEntry once = decide(kOnceInVolumes, subject, most.once, knobs);
+        PlanEntry often = decide(kOftenInVolumes, subject, most.once * most.once, knobs);
         VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
         layout.whole = v;
         if (once.on) {

@@ -27,7 +27,7 @@ struct VolumeLayout {
     bool glows = false;            ///< its own light is baked
     std::uint32_t glow_terms = 0;  ///< K_e: of scattered light of volumes; 0: none is
     std::uint32_t glow_walks = 0;  ///< from each node; 0 where glow_terms is
-    bool lights_surfaces = false;  ///< what it scatters to surfaces is baked
+    bool lights_surfaces = false;  ///< its scattering to surfaces is baked
     bool sees_sky = true;          ///< rows of multiple scattering hold light of the sky
     bool sees_surfaces = false;    ///< and what surfaces send to the volume
     bool coloured = false;         ///< rows have three bands though all volumes are grey
@@ -42,7 +42,7 @@ struct VolumePlan {
     std::vector<VolumeLayout> layouts;  ///< of volumes that are seen at all
 };
 
-/// Refuses volumes of fidelity "paper": what bakes hold is physical. Errors: bad_input, with a
+/// Refuses volumes of fidelity "paper", which bakes do not support. Errors: bad_input, with a
 /// remedy.
 formats::Status check_bakeable(const formats::Scene& scene);
 
@@ -52,7 +52,7 @@ formats::Status check_bakeable(const formats::Scene& scene);
 /// alpha d, light scattered more than once at most (alpha d)^2 (README.md, "Bounds").
 VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs);
 
-/// Optical depth between two nodes of what is typically dense there.
+/// Optical depth between two nodes at a typical density there.
 double spacing_depth(const Knobs& knobs);
 
 /// Whether surfaces receive light that volumes scatter, by the entries of a plan.

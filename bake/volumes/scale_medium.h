@@ -19,12 +19,12 @@ struct ScaledGrids {
 struct ScaledMedium {
     std::array<float, 3> sigma_t{};  ///< c' [1/m] where the density is 1, by band
     std::array<float, 3> albedo{};   ///< of c', by band; the largest where it varies
-    /// What stands in place of the volume's own grids; null where these hold.
+    /// Replaces the volume's own grids; null where these are unchanged.
     std::shared_ptr<const ScaledGrids> grids = nullptr;
 };
 
-/// Where the albedo varies, so does what the peak takes away: with the mean albedo A of a band and
-/// r = mean over bands of (1 - f alpha) / (1 - f A) at a voxel,
+/// Where the albedo varies, so does the extinction that the peak removes: with the mean albedo A of
+/// a band and r = mean over bands of (1 - f alpha) / (1 - f A) at a voxel,
 ///
 ///     sigma_t' = sigma_t (1 - f A),   rho' = rho r,   1 - alpha' = (1 - alpha) / ((1 - f A) r)
 ///

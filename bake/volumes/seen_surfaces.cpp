@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kSeenAtOnce = 16;  // vertices that a thread takes at once
 
-// What of each row of a vertex one of its sides shows, without the base colour.
+// Factors of a vertex's rows in the exitance of one of its sides, without the base colour.
 std::vector<float> weigh_rows(const ShownSurfaces& shown, const formats::PrimitiveRecord& record,
                               std::size_t primitive, std::size_t vertex, std::size_t side) {
     std::vector<float> weight(record.terms);

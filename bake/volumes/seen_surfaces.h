@@ -45,10 +45,10 @@ struct SeenSurfaces {
 /// Memory [bytes] of SeenSurfaces::rows.
 double seen_surfaces_bytes(const ShownSurfaces& shown, std::size_t bands, std::size_t cells);
 
-/// What leaves each vertex to all sides alike: of opaque and thin-walled surfaces their rows, of
-/// media the mean over views of what crosses the boundary. Light of the sky comes to a vertex
-/// through the volumes before it, as dim_surfaces has it. `bands`: of the result, 3 where any row
-/// has three. Incomplete once the context is cancelled.
+/// Exitance rows of all vertices, taken as diffuse: of opaque and thin-walled surfaces their rows,
+/// of media the mean over views of the light that crosses the boundary. The sky's light reaches a
+/// vertex through the volumes, as in dim_surfaces. `bands`: of the result, 3 where any row has
+/// three. Incomplete once the context is cancelled.
 SeenSurfaces find_seen_surfaces(const ShownSurfaces& shown, const DensitySpace& space,
                                 const LightCells& cells, std::size_t bands, const Context& context);
 

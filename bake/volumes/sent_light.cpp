@@ -26,11 +26,11 @@ using Harmonics = std::array<float, formats::kMaxHarmonics>;
 
 // Sums over nodes in coefficients of the cells, before they become texels.
 struct SentSums {
-    std::vector<float> once;   // of V, times what J^(1) takes of each harmonic: k after k, by band
+    std::vector<float> once;   // V times the weight of each harmonic in J^(1): k after k, by band
     std::vector<float> often;  // of the rows T_k, by band
 };
 
-// Calls visit(coefficient of the cells, value) for what a row has of them in one band.
+// Calls visit(coefficient of the cells, value) for the coefficients of a row in one band.
 template <class Visit>
 void visit_coarse(const SentLight& light, const formats::RowRange& range, std::uint32_t row,
                   std::uint32_t band, Visit&& visit) {
@@ -58,7 +58,7 @@ void visit_coarse(const SentLight& light, const formats::RowRange& range, std::u
     }
 }
 
-// Adds what a node sends; `view`: harmonics of the direction to the receiver.
+// Adds the light that a node scatters to the receiver; `view`: harmonics of the direction to it.
 void add_node(const SentLight& light, const formats::VolumeRecord& record, std::uint32_t node,
               const std::array<float, 3>& weight, const Harmonics& view, SentSums& sums) {
     const std::size_t cells = light.cells.size(), bands = light.bands();

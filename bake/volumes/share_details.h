@@ -18,10 +18,10 @@ struct DetailPools {
 
 /// The rows with those details of each pool that score highest,
 ///     score = weight of the row * score of select_coefficients,
-/// so that the next detail of any row of a pool would be worth as much as that of any other: the
-/// error of all rows together, each times its weight, is the least for that many details. Ties go
-/// to the first; details without any score go in any case. Averages and scales stay. `selector`:
-/// of the same cube map; every row has `bands` bands.
+/// which minimises the weighted error of all rows together for that many details: the next detail
+/// of any row of a pool would reduce it equally. Ties go to the first; details with a score of 0
+/// are dropped. Averages and scales stay. `selector`: of the same cube map; every row has `bands`
+/// bands.
 formats::SparseRows share_details(const formats::SparseRows& rows, std::uint32_t bands,
                                   const Selector& selector, const DetailPools& pools);
 

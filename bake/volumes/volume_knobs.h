@@ -7,6 +7,7 @@
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knob.h"
 #include "bake/volumes/degree_rate.h"
+#include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_method.h"
 
 namespace opaline::bake {
@@ -19,12 +20,12 @@ inline bool is_lit(const RowLayout&, std::span<const PlanEntry> decisions) {
 }
 inline bool is_scattered_often(const RowLayout&, std::span<const PlanEntry> decisions) {
     return std::ranges::any_of(decisions, [](const PlanEntry& entry) {
-        return entry.on && entry.name == "volume-multiple";
+        return entry.on && entry.name == kOftenInVolumes;
     });
 }
 // Light of surfaces has rows and walks of its own.
 inline bool sees_surface(const PlanEntry& entry) {
-    return entry.on && entry.name == "surface-volume";
+    return entry.on && entry.name == kSurfacesToVolumes;
 }
 inline bool has_rows_by_view(const RowLayout& layout, std::span<const PlanEntry> decisions) {
     return is_scattered_often(layout, decisions) || std::ranges::any_of(decisions, sees_surface);
@@ -32,7 +33,7 @@ inline bool has_rows_by_view(const RowLayout& layout, std::span<const PlanEntry>
 // Whether a volume's light that is scattered more than once takes that way, or may.
 inline bool goes_by(std::span<const PlanEntry> decisions, VolumeMethod method) {
     return std::ranges::any_of(decisions, [&](const PlanEntry& entry) {
-        return entry.on && entry.name == "volume-multiple" &&
+        return entry.on && entry.name == kOftenInVolumes &&
                (entry.choice.empty() || entry.choice == name_of(method));
     });
 }
@@ -42,10 +43,6 @@ inline bool is_walked(const RowLayout&, std::span<const PlanEntry> decisions) {
 inline bool follows_paths(const RowLayout&, std::span<const PlanEntry> decisions) {
     return goes_by(decisions, VolumeMethod::path_integration);
 }
-inline constexpr const char* kWhyDark = "no volume scatters light";
-inline constexpr const char* kWhyOnce = "no light is scattered more than once in a volume";
-inline constexpr const char* kWhyNoWalks = "no light of a volume is found by random walks";
-inline constexpr const char* kWhyNoPaths = "no light of a volume is found by path integration";
 inline constexpr std::array<double, 4> kSpacings{1, 2, 4, 8};
 inline constexpr std::array<double, 5> kTermCounts{1, 4, 9, 16, 25};
 // Of the sweep.
@@ -85,8 +82,7 @@ inline constexpr KnobSpec kVolumeSpacing{
                .words = "square of the spacing, where light is smooth between nodes",
                .rate = 2,
                .fine_is_small = true},
-    .matters = volume_knobs::is_lit,
-    .why_idle = volume_knobs::kWhyDark};
+    .matters = volume_knobs::is_lit};
 
 /// Coefficients of a node.
 inline constexpr KnobSpec kVolumeCoefficients{
@@ -108,8 +104,7 @@ inline constexpr KnobSpec kVolumeCoefficients{
     .theory = {.label = "coefficients of a point of volumes",
                .words = "edge of a texel, where light is a smooth function of its direction",
                .rate = -0.5},
-    .matters = volume_knobs::is_lit,
-    .why_idle = volume_knobs::kWhyDark};
+    .matters = volume_knobs::is_lit};
 
 /// VolumeMethod.
 inline constexpr KnobSpec kVolumeMethod{
@@ -125,8 +120,7 @@ inline constexpr KnobSpec kVolumeMethod{
     .highest = 2,
     .words = kVolumeMethodWords,
     .preset = {0, 0, 0, 0},
-    .matters = volume_knobs::is_scattered_often,
-    .why_idle = volume_knobs::kWhyOnce};
+    .matters = volume_knobs::is_scattered_often};
 
 /// Directions from each node along which quasi-paths begin; twice as many as rows at least.
 inline constexpr KnobSpec kVolumePaths{
@@ -148,8 +142,7 @@ inline constexpr KnobSpec kVolumePaths{
                .words = "views as even points on a sphere, of light with edges [Beck1984]; the "
                         "error of paths themselves stays",
                .rate = -0.75},
-    .matters = volume_knobs::follows_paths,
-    .why_idle = volume_knobs::kWhyNoPaths};
+    .matters = volume_knobs::follows_paths};
 
 /// Random walks from each node.
 inline constexpr KnobSpec kVolumeWalks{
@@ -168,10 +161,9 @@ inline constexpr KnobSpec kVolumeWalks{
     .diagonal = volume_knobs::kWalkDiagonal,
     .truths = volume_knobs::kWalkTruths,
     .theory = {.label = "walks from a node", .words = "noise of independent walks", .rate = -0.5},
-    .matters = volume_knobs::is_walked,
-    .why_idle = volume_knobs::kWhyNoWalks};
+    .matters = volume_knobs::is_walked};
 
-/// Rows of a node that say how light that was scattered more than once changes with the view.
+/// Rows of a node for the dependence of multiple scattering on the view.
 inline constexpr KnobSpec kVolumeTerms{
     .name = "volume_terms",
     .option = "--volume-terms",
@@ -190,8 +182,7 @@ inline constexpr KnobSpec kVolumeTerms{
                .words = "moments of Henyey and Greenstein's phase function without its peak",
                .rate_by_cosine = rate_of_degree,
                .value = volume_knobs::degree_of},
-    .matters = volume_knobs::has_rows_by_view,
-    .why_idle = volume_knobs::kWhyOnce};
+    .matters = volume_knobs::has_rows_by_view};
 
 /// Mean numbers of coefficients of the rows of a node; the face averages are there in any case.
 struct NodeCoefficients {

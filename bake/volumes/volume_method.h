@@ -8,7 +8,7 @@ namespace opaline::bake {
 
 /// How light that was scattered more than once is found; the order of the knob's words.
 enum class VolumeMethod : std::uint8_t {
-    automatic,         ///< as the work that is counted and the error that is measured say
+    automatic,         ///< by counted work and measured error
     path_integration,  ///< quasi-most-probable paths: no noise, an error of the model
     walks              ///< random walks: noise, no error of the model
 };

@@ -10,10 +10,10 @@
 
 namespace opaline::bake {
 
-/// Volumes as they are baked: where a volume is dense in places and thin in others, as several
-/// volumes, each with nodes at a distance of its own. Densities are linear between voxels, so those
-/// of the parts add up to the whole's everywhere, and light changes from the nodes of one to those
-/// of the other as their densities do, without a seam (README.md, "Parts").
+/// Volumes as they are baked. A volume with dense and thin places is divided into several volumes
+/// with their own node spacing. Densities are linear between voxels, so the parts add up to the
+/// whole everywhere, and light blends between the nodes of two parts as their densities do, without
+/// a seam (README.md, "Parts").
 struct VolumeParts {
     std::optional<formats::Scene> scene;  ///< the parts, nothing else; nothing: as given
     std::vector<VolumeLayout> layouts;    ///< VolumeLayout::volume counts among these

@@ -36,7 +36,7 @@ struct DepthsAround {
     }
 };
 
-// Light is the same whichever volume's nodes tell it: the first that is there does.
+// Light at a point is the same for all volumes: use the nodes of the first one there.
 DepthsAround depths_around(const VolumeWalkSpace& walk, glm::vec3 at) {
     DepthsAround depths;
     depths.stride = walk.depths.bands == 1 ? 0 : walk.depths.cells;

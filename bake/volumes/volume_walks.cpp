@@ -50,7 +50,7 @@ void add_light(const VolumeWalkSpace& walk, const Track& track, std::uint32_t vo
                   sum.data() + track.first * walk.cells.size());
 }
 
-// Follows one walk from a receiver; what it meets is added to `sum`, bands times cells.
+// Follows one walk from a receiver and adds the light that it gathers to `sum`, bands times cells.
 std::uint64_t follow(const VolumeWalkSpace& walk, const WalkReceiver& receiver, const Track& track,
                      glm::vec3 direction, FlightRandom& random, std::span<float> sum) {
     std::uint64_t traced = 0;

@@ -25,8 +25,8 @@ struct VolumeWalkSpace {
     const SeenSurfaces* surfaces = nullptr;  ///< that send light to volumes; null: black
 };
 
-/// A walk ends after so many scatterings: only in media thousands of mean free paths deep, where
-/// what is left is as dark as it is far.
+/// A walk ends after so many scatterings. Only media thousands of mean free paths deep reach this,
+/// where the remaining light is negligible.
 inline constexpr std::uint32_t kMostScatterings = 2048;
 
 /// Where multiple scattering is wanted.

@@ -19,10 +19,14 @@
 namespace opaline::bake {
 namespace {
 
-// A scattering of the reference's paths takes as long as so many steps of an optical depth, or
-// directions of light that join a walk; a step of a quasi-path, with the light of four directions,
-// as long as so many steps (tests/bench/RESULTS.md, "Volumes").
+// Costs in units of the reference's scatterings: a step of an optical depth takes 1/16 of one, a
+// cell of light that joins a walk 1/180. A step of a quasi-path, with the light of four directions,
+// takes as long as 4 steps of an optical depth (tests/bench/RESULTS.md, "Volumes").
 constexpr double kStepScattering = 1.0 / 16, kCellScattering = 1.0 / 180, kStepsOfPathStep = 4;
+
+// Seconds: light of one direction and band that joins a walk; a texel of a node's row, its
+// transform, selection and quantising.
+constexpr double kScatteredCell = 1.1e-9, kNodeTexel = 1.6e-8;
 
 constexpr float kForever = std::numeric_limits<float>::infinity();
 
@@ -90,15 +94,16 @@ bool takes_walks(const VolumeWork& work) {
     return work.method != VolumeMethod::path_integration || work.sees_surfaces;
 }
 
-// Of an optical depth from a surface through all volumes, at most: outside of a volume a line meets
-// it as long as from within.
+// Of an optical depth from a surface through all volumes, in the mean over directions: one in five
+// meets a volume (measured: a plume over a floor), as long as from within.
 double steps_to_light(std::span<const VolumeWork> works) {
+    constexpr double kMeets = 0.2;
     double steps = 0;
     for (const VolumeWork& work : works) {
         steps +=
             work.nodes > 0 ? work.depth_steps / (work.nodes * work.cells) : std::cbrt(work.voxels);
     }
-    return steps;
+    return kMeets * steps;
 }
 
 // Steps and collisions, from some nodes of the volume.
@@ -193,22 +198,20 @@ double count_in_scatterings(std::span<const VolumeWork> works) {
 
 Work attenuation_work(const CostInput& input, const VolumeWork& work) {
     const double texel = texels(input.knobs.cubemap_size) * work.bands;
-    return {0, work.depth_steps * input.rates.density_step +
-                   work.nodes * texel * input.rates.node_texel};
+    return {0, work.depth_steps * kDensityStep + work.nodes * texel * kNodeTexel};
 }
 
 Work scattering_work(const CostInput& input, const VolumeWork& work) {
     const double texel = texels(input.knobs.cubemap_size) * work.bands;
     const double rows = work.nodes * work.terms;
-    Work sum{0, rows * texel * input.rates.node_texel};
+    Work sum{0, rows * texel * kNodeTexel};
     if (work.method == VolumeMethod::path_integration) {
-        sum.shared += work.path_steps * kStepsOfPathStep * input.rates.density_step;
+        sum.shared += work.path_steps * kStepsOfPathStep * kDensityStep;
     }
     if (takes_walks(work)) {
-        sum.shared +=
-            work.tracks * (work.flights * input.rates.volume_flight +
-                           work.collisions * work.walk_cells * input.rates.scattered_cell) +
-            rows * work.walks * work.tracks * work.walk_cells * input.rates.gather_entry;
+        sum.shared += work.tracks * (work.flights * kVolumeFlight +
+                                     work.collisions * work.walk_cells * kScatteredCell) +
+                      rows * work.walks * work.tracks * work.walk_cells * kGatherEntry;
     }
     return sum;
 }
@@ -217,15 +220,15 @@ Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, dou
                   double rows) {
     constexpr std::uint32_t kFinest = 16;  // dim_surfaces.cpp
     const double cells = texels(std::min(input.knobs.cubemap_size, kFinest));
-    return {0, rows * texels(input.knobs.cubemap_size) * input.rates.encode_grey +
-                   receivers * cells * steps_to_light(works) * input.rates.density_step};
+    return {0, rows * texels(input.knobs.cubemap_size) * kEncodeGrey +
+                   receivers * cells * steps_to_light(works) * kDensityStep};
 }
 
 Work seen_surfaces_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
                         double rows) {
     const double cells = texels(coarse_cells(input.knobs));
-    return {0, rows * texels(input.knobs.cubemap_size) * input.rates.encode_grey +
-                   receivers * cells * steps_to_light(works) * input.rates.density_step};
+    return {0, rows * texels(input.knobs.cubemap_size) * kEncodeGrey +
+                   receivers * cells * steps_to_light(works) * kDensityStep};
 }
 
 Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
@@ -240,9 +243,8 @@ Work sent_light_work(const CostInput& input, const VolumeWork& work, const Volum
     const double steps = kThrough * work.depth_steps / (work.nodes * work.cells);
     const double entries = work.bands * (static_cast<double>(most.attenuated) * layout.once_terms +
                                          static_cast<double>(most.scattered));
-    const double ray = input.rates.coherent_ray.at(input.triangles) +
-                       kShare * (steps * input.rates.density_step +
-                                 kPointsOfSentRay * entries * input.rates.gather_entry);
+    const double ray = kCoherentRay.at(input.triangles) +
+                       kShare * (steps * kDensityStep + kPointsOfSentRay * entries * kGatherEntry);
     return {0, receivers * count_sent_light_rays(input.knobs.quality) * ray};
 }
 

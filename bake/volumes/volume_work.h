@@ -10,7 +10,11 @@
 
 namespace opaline::bake {
 
-/// What a bake of one volume does, in counts; expected values where chance has a part.
+/// Seconds of a step of an optical depth through one volume; of a walk's flight to a collision, and
+/// the direction after it; of a collision of the reference's paths, its light included.
+inline constexpr double kDensityStep = 8.9e-8, kVolumeFlight = 2.4e-7, kTracedCollision = 1.2e-6;
+
+/// Work of baking one volume, in counts; expected values of random counts.
 struct VolumeWork {
     double voxels = 0;  ///< in bricks
     double bricks = 0;
@@ -57,7 +61,7 @@ Work scattering_work(const CostInput& input, const VolumeWork& work);
 Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
                   double rows);
 
-/// Light that a volume scatters to `receivers` vertices, where its layout says so.
+/// Work of the light that a volume scatters to `receivers` vertices, if its layout has it.
 Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
                      double receivers);
 
@@ -75,7 +79,7 @@ double scattered_row_bytes(const VolumeWork& work, const Knobs& knobs);
 /// Memory of one volume [bytes]: density, nodes, optical depths of walks, and rows.
 double volume_memory(const VolumeWork& work, const Knobs& knobs);
 
-/// Memory [bytes] of what surfaces of so many `sides` of vertices send to volumes.
+/// Memory [bytes] of the light that so many `sides` of vertices send to volumes.
 double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs, double sides);
 
 }  // namespace opaline::bake

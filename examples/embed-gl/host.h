@@ -7,6 +7,7 @@
 #include <EGL/eglext.h>
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
@@ -34,7 +35,8 @@ static int open_context(void) {
                           eglCreateContext(display, NULL, EGL_NO_CONTEXT, version));
 }
 
-/* A file's bytes, where the system maps them: aligned to a page. NULL: there is no such file. */
+/* A file's bytes, where the system maps them: aligned to a page. NULL: it cannot be read, and says
+   so. */
 static const void* map_file(const char* path, size_t* size) {
     struct stat status;
     const int file = open(path, O_RDONLY);
@@ -43,6 +45,7 @@ static const void* map_file(const char* path, size_t* size) {
         *size = (size_t)status.st_size;
         bytes = mmap(NULL, *size, PROT_READ, MAP_PRIVATE, file, 0);
     }
+    if (bytes == MAP_FAILED) fprintf(stderr, "%s: %s\n", path, strerror(errno));
     if (file >= 0) close(file);
     return bytes == MAP_FAILED ? NULL : bytes;
 }

@@ -1,39 +1,20 @@
 /* Loads a baked asset, puts it under a white sky or a sun, and prints the mean outgoing radiance.
        minimal FILE.opal [sun]                                                                    */
-#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "opaline.h"
 
-/* The asset is used where it lies, aligned to 64 bytes (C99 has no aligned_alloc): *block is to be
-   freed. */
-static void* read_file(const char* path, size_t* size, void** block) {
-    char* bytes = NULL;
-    FILE* file = fopen(path, "rb");
-    if (file != NULL && fseek(file, 0, SEEK_END) == 0 && ftell(file) > 0) {
-        *size = (size_t)ftell(file);
-        rewind(file);
-        *block = malloc(*size + 63);
-        if (*block != NULL) bytes = (char*)(((uintptr_t)*block + 63) / 64 * 64);
-        if (bytes != NULL && fread(bytes, 1, *size, file) != *size) bytes = NULL;
-    }
-    if (file != NULL) fclose(file);
-    return bytes;
-}
-
 int main(int argc, char** argv) {
-    size_t size = 0;
-    void *block = NULL, *bytes = argc > 1 ? read_file(argv[1], &size, &block) : NULL;
     opaline_asset* asset = NULL;
     opaline_light* light = NULL;
     const float white[3] = {1, 1, 1}, direction[3] = {1, 2, 1}, sun[3] = {5e4f, 5e4f, 5e4f};
-    if (bytes == NULL) {
+    if (argc < 2) {
         fprintf(stderr, "usage: %s FILE.opal [sun]\n", argv[0]);
         return 2;
     }
-    if (opaline_asset_load(bytes, size, &asset) != OPALINE_OK ||
+    if (opaline_asset_load_path(argv[1], &asset) != OPALINE_OK ||
         opaline_light_create(asset, &light) != OPALINE_OK ||
         (argc > 2 && strcmp(argv[2], "sun") == 0
              ? opaline_light_add_sun(light, direction, 0.00465f, sun)
@@ -53,6 +34,5 @@ int main(int argc, char** argv) {
     free(radiance);
     opaline_light_release(light);
     opaline_asset_release(asset);
-    free(block);
     return 0;
 }

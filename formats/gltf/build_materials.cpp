@@ -13,6 +13,7 @@
 #include "formats/gltf/map_gloss.h"
 #include "formats/gltf/map_medium.h"
 #include "formats/gltf/map_sheet.h"
+#include "formats/gltf/map_specular_glossiness.h"
 
 namespace opaline::formats::gltf {
 
@@ -20,7 +21,7 @@ namespace {
 
 /// The meaning of an extension that is not simulated.
 std::string unsimulated_extension(const std::string& name) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 14> kKnown = {{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kKnown = {{
         {"KHR_materials_volume", "absorption inside the object"},
         {"KHR_materials_scatter", "scattering inside the object"},
         {"KHR_materials_volume_scatter", "scattering inside the object"},
@@ -32,7 +33,6 @@ std::string unsimulated_extension(const std::string& name) {
         {"KHR_materials_anisotropy", "anisotropic reflection"},
         {"KHR_materials_dispersion", "dispersion"},
         {"KHR_materials_unlit", "unlit shading; it is baked as a lit diffuse surface"},
-        {"KHR_materials_pbrSpecularGlossiness", "specular-glossiness shading"},
         {"KHR_materials_variants", "material variants"},
         {"KHR_texture_basisu", "Basis Universal textures"},
     }};
@@ -55,7 +55,8 @@ bool is_part_of_medium(std::string_view name) {
 /// The extensions that describe a surface's reflection, of a medium or opaque, or its emission.
 bool is_part_of_surface(std::string_view name) {
     return name == "KHR_materials_ior" || name == "KHR_materials_specular" ||
-           name == "KHR_materials_emissive_strength";
+           name == "KHR_materials_emissive_strength" ||
+           name == "KHR_materials_pbrSpecularGlossiness";
 }
 
 std::vector<std::string> unsimulated(const MaterialSource& material, const Material& mapped) {
@@ -221,16 +222,18 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
     TextureLoader loader(document, resources, scene, report);
     std::map<std::string, std::vector<std::string>> lost;
     for (std::size_t i = 0; i < document.materials.size(); ++i) {
-        const MaterialSource& source = document.materials[i];
+        MaterialSource source = as_metallic_roughness(document.materials[i]);
         const std::string where = label("material", i, source.name);
         Material material = convert(source, where, report);
         std::vector<std::string> remarks;
+        std::optional<float> mirror_ior;
         if (const auto thin = map_sheet(source.translucency, material.base_color,
                                         source.base_color_texture.texture != kNone, remarks)) {
             material.sheet = thin->sheet;
             material.sheet->opaque_color = material.base_color;
             material.sheet->opaque_double_sided = material.double_sided;
             material.base_color = thin->base_color;
+            mirror_ior = thin->mirror_ior;
             material.double_sided = true;  // it has two sides
         } else {
             material.medium = map_medium(source.translucency, metres_per_unit, remarks);
@@ -240,8 +243,16 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
         }
         if (material.sheet) {
             material.sheet->opaque_metallic = material.gloss.metallic;
+            material.gloss.ior = mirror_ior.value_or(material.gloss.ior);
         }
         if (used[i]) {
+            if (source.specular_glossiness &&
+                add_specular_glossiness(*source.specular_glossiness, where, loader, scene, material,
+                                        remarks)) {
+                source.base_color_texture = {};
+            }
+            material.is_unstated_metal =
+                !source.translucency.states_reflection && !source.translucency.is_diffuse;
             add_textures(source, where, loader, material, remarks);
             if (material.medium) {
                 add_scatter_textures(source, where, loader, material, remarks);

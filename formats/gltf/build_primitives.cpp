@@ -5,8 +5,9 @@
 #include <string>
 
 #include "formats/gltf/choose_origin.h"
+#include "formats/gltf/complete_normals.h"
+#include "formats/gltf/placement.h"
 #include "formats/gltf/read_primitive.h"
-#include "formats/gltf/smooth_normals.h"
 #include "formats/gltf/tangents.h"
 
 namespace opaline::formats::gltf {
@@ -35,13 +36,14 @@ bool is_near(glm::vec3 p) {
     return std::abs(p.x) <= kFarthest && std::abs(p.y) <= kFarthest && std::abs(p.z) <= kFarthest;
 }
 
-void place_positions(const PrimitiveData& data, const glm::dmat4& world, double metres_per_unit,
+void place_positions(const PrimitiveData& data, const Placement& placement, double metres_per_unit,
                      glm::dvec3 origin, Primitive& out, Report& report) {
     const std::size_t count = data.position.size() / 3;
     out.position.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const glm::dvec3 p =
-            metres_per_unit * glm::dvec3(world * glm::dvec4(triple(data.position, i), 1.0));
+            metres_per_unit *
+            glm::dvec3(placement.at(i) * glm::dvec4(triple(data.position, i), 1.0));
         out.position[i] = glm::vec3(p - origin);
         if (!is_finite(glm::dvec3(glm::vec3(p))) || !is_near(out.position[i])) {
             report.error(out.name,
@@ -53,10 +55,12 @@ void place_positions(const PrimitiveData& data, const glm::dmat4& world, double 
 }
 
 /// Leaves {0,0,0} where the file gives no direction. Sets nothing if there is no NORMAL.
-void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive& out) {
-    const glm::dmat3 linear(world);
-    const double sign = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
-    const glm::dmat3 to_world = sign * cofactors(linear);
+void place_normals(const PrimitiveData& data, const Placement& placement, Primitive& out) {
+    const auto turn = [](const glm::dmat4& world) {
+        const glm::dmat3 linear(world);
+        return (glm::determinant(linear) < 0.0 ? -1.0 : 1.0) * cofactors(linear);
+    };
+    const glm::dmat3 by_node = turn(placement.world);
     const std::size_t count = data.normal.size() / 3;
     out.normal.assign(count, glm::vec3(0.0f));
     for (std::size_t i = 0; i < count; ++i) {
@@ -66,7 +70,8 @@ void place_normals(const PrimitiveData& data, const glm::dmat4& world, Primitive
         if (!std::isfinite(stored_length) || !(stored_length > 1e-6)) {
             continue;
         }
-        const glm::dvec3 n = to_world * (stored / stored_length);
+        const glm::dvec3 n = (placement.skinned.empty() ? by_node : turn(placement.at(i))) *
+                             (stored / stored_length);
         const double length = glm::length(n);
         if (std::isfinite(length) && length > 0.0) {
             out.normal[i] = glm::vec3(n / length);
@@ -164,60 +169,6 @@ void place_indices(const PrimitiveData& data, bool mirrored, Primitive& out, Rep
     }
 }
 
-bool lacks_direction(glm::vec3 n) {
-    return n == glm::vec3(0.0f);
-}
-
-/// Normals for what the file leaves open, over all primitives of one mesh instance together: a
-/// mesh split by material has its seams between primitives. Vertices with a good NORMAL keep it.
-void complete_normals(std::span<Primitive> instance, Report& report) {
-    const bool complete = std::all_of(instance.begin(), instance.end(), [](const Primitive& p) {
-        return p.normal.size() == p.position.size() &&
-               std::none_of(p.normal.begin(), p.normal.end(), lacks_direction);
-    });
-    if (complete) {
-        return;
-    }
-    std::vector<glm::vec3> position;
-    std::vector<std::uint32_t> index;
-    for (const Primitive& primitive : instance) {
-        const auto first = static_cast<std::uint32_t>(position.size());
-        position.insert(position.end(), primitive.position.begin(), primitive.position.end());
-        for (const std::uint32_t i : primitive.index) {
-            index.push_back(first + i);
-        }
-    }
-    const std::vector<glm::vec3> computed = smooth_normals(position, index);
-    std::size_t first = 0;
-    for (Primitive& primitive : instance) {
-        const bool stored = !primitive.normal.empty();
-        primitive.normal.resize(primitive.position.size(), glm::vec3(0.0f));
-        std::size_t repaired = 0, open = 0;
-        for (std::size_t v = 0; v < primitive.normal.size(); ++v) {
-            if (lacks_direction(primitive.normal[v])) {
-                primitive.normal[v] = computed[first + v];
-                ++repaired;
-                open += lacks_direction(primitive.normal[v]) ? 1 : 0;
-            }
-        }
-        first += primitive.position.size();
-        if (stored && repaired > open) {
-            report.warn(primitive.name,
-                        std::to_string(repaired - open) +
-                            " values of NORMAL had no direction and are computed "
-                            "from the faces",
-                        "recompute normals before export");
-        }
-        if (open > 0) {
-            report.warn(primitive.name,
-                        std::to_string(open) +
-                            " vertices have neither a normal nor a face to "
-                            "compute one from; they receive no light",
-                        "delete loose vertices and triangles without area");
-        }
-    }
-}
-
 }  // namespace
 
 bool has_area(const Primitive& primitive) {
@@ -230,28 +181,29 @@ bool has_area(const Primitive& primitive) {
 }
 
 void build_primitives(const Document& document, const std::vector<MeshInstance>& instances,
-                      const std::vector<Bytes>& buffers, double metres_per_unit, Scene& scene,
-                      Report& report) {
+                      const std::vector<Bytes>& buffers, const PrimitiveOptions& options,
+                      Scene& scene, Report& report) {
+    const double metres_per_unit = options.metres_per_unit;
     scene.origin = choose_origin(document, instances, buffers, metres_per_unit);
-    std::size_t morphed = 0;
+    ComputedNormals computed;
     for (const MeshInstance& instance : instances) {
-        const std::uint32_t mesh_index = document.nodes[instance.node].mesh;
+        const Node& node = document.nodes[instance.node];
+        const std::uint32_t mesh_index = node.mesh;
         const Mesh& mesh = document.meshes[mesh_index];
         const std::size_t first = scene.primitives.size();
-        const bool mirrored = glm::determinant(glm::dmat3(instance.world)) < 0.0;
         for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p) {
             const MeshPrimitive& source = mesh.primitives[p];
             Primitive& out = scene.primitives.emplace_back();
             out.node = instance.node;
             out.mesh = mesh_index;
             out.primitive = p;
-            out.name = label("node", instance.node, document.nodes[instance.node].name) +
-                       " > mesh " + std::to_string(mesh_index) + " > primitive " +
-                       std::to_string(p);
+            out.name =
+                label("node", instance.node, node.name) +
+                (instance.copy == kNone ? "" : " > instance " + std::to_string(instance.copy)) +
+                " > mesh " + std::to_string(mesh_index) + " > primitive " + std::to_string(p);
             out.material = source.material == kNone
                                ? static_cast<std::uint32_t>(scene.materials.size() - 1)
                                : source.material;
-            morphed += source.has_morph_targets ? 1 : 0;
             if (source.mode < Mode::triangles) {
                 report.warn(out.name, "points and lines are not simulated: it is kept empty");
                 continue;
@@ -259,27 +211,32 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
             const Material& material = scene.materials[out.material];
             // Kept without a texture, too: a media file may bring one.
             const bool has_normal_map = material.normal_image != kNone;
-            const auto data =
-                read_primitive(document, buffers, source, material.base_color_texcoord,
-                               has_normal_map, out.name, report);
+            const auto data = read_primitive(
+                document, buffers, source,
+                {.texcoord_set = material.base_color_texcoord,
+                 .tangents = has_normal_map,
+                 .joints = !instance.joints.empty(),
+                 .morph_weights = node.weights.empty() ? mesh.weights : node.weights},
+                out.name, report);
             if (!data) {
                 continue;
             }
-            place_positions(*data, instance.world, metres_per_unit, scene.origin, out, report);
-            place_normals(*data, instance.world, out);
+            const Placement placement = place_primitive(instance, *data, out.name, report);
+            place_positions(*data, placement, metres_per_unit, scene.origin, out, report);
+            place_normals(*data, placement, out);
             place_texcoords(*data, material, out, report);
             // The specification ignores tangents without normals.
             if (has_normal_map && !data->normal.empty() &&
                 keeps_axes(material.base_color_uv_transform)) {
-                out.tangent = turn_tangents(data->tangent, instance.world);
+                out.tangent = turn_tangents(data->tangent, placement);
             }
             place_colors(*data, material, out, report);
-            place_indices(*data, mirrored, out, report);
+            place_indices(*data, placement.is_mirrored, out, report);
             warn_of_coarse_positions(*data, out, scene.origin, report);
         }
         if (!report.failed()) {
             const auto made = std::span(scene.primitives).subspan(first);
-            complete_normals(made, report);
+            complete_normals(made, options.smooth_angle, computed, report);
             for (Primitive& primitive : made) {
                 if (scene.materials[primitive.material].normal_image != kNone &&
                     !primitive.texcoord.empty()) {
@@ -288,12 +245,7 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
             }
         }
     }
-    if (morphed > 0) {
-        report.warn("",
-                    "morph targets are not simulated: " + std::to_string(morphed) +
-                        " primitives are baked in their base shape",
-                    "apply the shape before export");
-    }
+    tell_of_normals(computed, options.smooth_angle, report);
 }
 
 }  // namespace opaline::formats::gltf

@@ -14,14 +14,15 @@ using Json = nlohmann::json;
 constexpr std::uint64_t kMaxIndex = 0x7ffffffe;   // what an int can hold
 constexpr std::uint64_t kMaxOffset = 1ull << 40;  // past any file we read
 
-constexpr std::array<std::string_view, 14> kRequirable = {
+constexpr std::array<std::string_view, 16> kRequirable = {
     "KHR_mesh_quantization",        "KHR_texture_transform",
     "KHR_draco_mesh_compression",   "EXT_meshopt_compression",
     "KHR_materials_volume",         "KHR_materials_scatter",
     "KHR_materials_volume_scatter", "KHR_materials_diffuse_transmission",
     "KHR_materials_transmission",   "KHR_materials_ior",
     "KHR_materials_specular",       "KHR_materials_emissive_strength",
-    "KHR_lights_punctual",          "OPALINE_media"};
+    "KHR_lights_punctual",          "KHR_materials_pbrSpecularGlossiness",
+    "EXT_mesh_gpu_instancing",      "OPALINE_media"};
 
 void check_version(const Json& root, Report& report) {
     const auto asset = root.find("asset");
@@ -92,6 +93,22 @@ void check_whole(const Json& value, std::uint64_t limit, const std::string& wher
     }
 }
 
+/// Morph targets: each an object of semantics and accessors.
+void check_targets(const Json& targets, const std::string& where, Report& report) {
+    const bool good =
+        targets.is_array() && std::all_of(targets.begin(), targets.end(),
+                                          [](const Json& target) { return target.is_object(); });
+    if (!good) {
+        report.error(where, "targets is not an array of objects", kExportAgain);
+        return;
+    }
+    for (const Json& target : targets) {
+        for (const auto& [name, accessor] : target.items()) {
+            check_whole(accessor, kMaxIndex, where, "morph target " + in_quotes(name), report);
+        }
+    }
+}
+
 /// Recursion is bounded by kMaxJsonDepth.
 void check_indices(const Json& value, const std::string& where, Report& report) {
     if (value.is_array()) {
@@ -109,6 +126,15 @@ void check_indices(const Json& value, const std::string& where, Report& report) 
         if (key == "attributes" && member.is_object()) {
             for (const auto& [name, accessor] : member.items()) {
                 check_whole(accessor, kMaxIndex, where, "attribute " + in_quotes(name), report);
+            }
+        } else if (key == "targets" && where.starts_with("meshes")) {
+            check_targets(member, where, report);
+        } else if (key == "weights") {
+            const bool good = member.is_array() &&
+                              std::all_of(member.begin(), member.end(),
+                                          [](const Json& weight) { return weight.is_number(); });
+            if (!good) {
+                report.error(where, "weights is not an array of numbers", kExportAgain);
             }
         } else if (key == "indices" && member.is_object()) {
             check_indices(member, where + ".sparse.indices", report);
@@ -223,9 +249,9 @@ std::optional<nlohmann::json> parse_checked_json(std::string_view text, Report& 
 }
 
 void check_member_types(const nlohmann::json& root, Report& report) {
-    constexpr std::array<const char*, 11> kArrays = {
-        "accessors", "animations", "buffers",  "bufferViews", "images",  "materials",
-        "meshes",    "nodes",      "samplers", "scenes",      "textures"};
+    constexpr std::array<const char*, 12> kArrays = {
+        "accessors", "animations", "buffers",  "bufferViews", "images", "materials",
+        "meshes",    "nodes",      "samplers", "scenes",      "skins",  "textures"};
     for (const char* name : kArrays) {
         const auto found = root.find(name);
         if (found == root.end()) {

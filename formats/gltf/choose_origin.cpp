@@ -84,11 +84,19 @@ glm::dvec3 choose_origin(const Document& document, const std::vector<MeshInstanc
             found = meshes.emplace(mesh, bounds_of(document, document.meshes[mesh], buffers)).first;
         }
         const Box& box = found->second;
-        for (int corner = 0; corner < 8 && !box.is_empty(); ++corner) {
-            const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x,
-                               (corner & 2) != 0 ? box.high.y : box.low.y,
-                               (corner & 4) != 0 ? box.high.z : box.low.z);
-            scene.add(metres_per_unit * glm::dvec3(instance.world * glm::dvec4(p, 1.0)));
+        const auto add = [&](const glm::dmat4& world) {
+            for (int corner = 0; corner < 8 && !box.is_empty(); ++corner) {
+                const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x,
+                                   (corner & 2) != 0 ? box.high.y : box.low.y,
+                                   (corner & 4) != 0 ? box.high.z : box.low.z);
+                scene.add(metres_per_unit * glm::dvec3(world * glm::dvec4(p, 1.0)));
+            }
+        };
+        if (instance.joints.empty()) {
+            add(instance.world);
+        }
+        for (const glm::dmat4& joint : instance.joints) {
+            add(joint);
         }
     }
     if (scene.is_empty()) {

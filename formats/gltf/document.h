@@ -58,24 +58,34 @@ enum class Mode : std::uint32_t {
     triangle_fan
 };
 
+using Attributes = std::map<std::string, std::uint32_t>;  ///< semantic -> accessor
+
 struct MeshPrimitive {
-    std::map<std::string, std::uint32_t> attributes;  ///< semantic -> accessor
+    Attributes attributes;
+    std::vector<Attributes> targets;  ///< morph targets: what each adds to the attributes
     std::uint32_t indices = kNone, material = kNone;
     Mode mode = Mode::triangles;
-    bool has_morph_targets = false;
 };
 
 struct Mesh {
     std::string name;
     std::vector<MeshPrimitive> primitives;
+    std::vector<double> weights;  ///< of morph targets at rest, where a node states none
+};
+
+struct Skin {
+    std::vector<std::uint32_t> joints;            ///< nodes; not empty
+    std::uint32_t inverse_bind_matrices = kNone;  ///< accessor; none: identities
 };
 
 struct Node {
     std::string name;
-    std::uint32_t mesh = kNone, light = kNone;
+    std::uint32_t mesh = kNone, light = kNone, skin = kNone;
     std::vector<std::uint32_t> children;
-    glm::dmat4 local{1.0};  ///< to the parent's frame
-    bool has_skin = false, has_camera = false;
+    glm::dmat4 local{1.0};        ///< to the parent's frame
+    std::vector<double> weights;  ///< of the mesh's morph targets at rest; empty: the mesh's
+    Attributes instances;         ///< EXT_mesh_gpu_instancing; empty: the mesh is placed once
+    bool has_camera = false;
     std::vector<std::string> extensions;
 };
 
@@ -103,7 +113,8 @@ struct TranslucencySource {
     glm::dvec3 multiscatter_color{1.0};      ///< of whichever scatter extension there is
     double anisotropy = 0.0;
     double metallic = 1.0, roughness = 1.0;
-    bool is_diffuse = false;  ///< unlit, or specular-glossiness without pbrMetallicRoughness
+    bool states_reflection = false;  ///< metallicFactor, roughnessFactor or their texture
+    bool is_diffuse = false;         ///< unlit
     TextureUse scatter_strength_texture, multiscatter_color_texture;
     std::vector<std::string> textures;  ///< names of the members above that a texture modulates and
                                         ///< nothing reads
@@ -126,6 +137,15 @@ struct LightSource {
     double inner_cone = 0.0, outer_cone = std::numbers::pi / 4;
 };
 
+/// KHR_materials_pbrSpecularGlossiness, with its defaults.
+struct SpecularGlossiness {
+    glm::dvec4 diffuse{1.0};
+    glm::dvec3 specular{1.0};
+    double glossiness = 1.0;
+    TextureUse diffuse_texture;
+    TextureUse specular_glossiness_texture;  ///< specular as sRGB codes; alpha: glossiness
+};
+
 struct MaterialSource {
     std::string name;
     glm::dvec4 base_color{1.0};
@@ -137,6 +157,7 @@ struct MaterialSource {
     double alpha_cutoff = 0.5;
     std::vector<std::string> extensions;
     TranslucencySource translucency;
+    std::optional<SpecularGlossiness> specular_glossiness;
 };
 
 struct Texture {
@@ -145,6 +166,7 @@ struct Texture {
 
 struct Sampler {
     std::uint32_t wrap_s = 10497, wrap_t = 10497;
+    std::uint32_t mag_filter = kNone, min_filter = kNone;
 };
 
 struct ImageSource {
@@ -157,7 +179,8 @@ struct Document {
     std::vector<Accessor> accessors;
     std::vector<Mesh> meshes;
     std::vector<Node> nodes;
-    std::vector<std::vector<std::uint32_t>> scenes;  ///< root nodes of each
+    std::vector<Skin> skins;
+    std::vector<std::vector<std::uint32_t>> scenes;  ///< nodes that each lists
     std::uint32_t default_scene = kNone;
     std::vector<MaterialSource> materials;
     std::vector<LightSource> lights;

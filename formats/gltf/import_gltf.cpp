@@ -45,6 +45,7 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     }
     Resources resources;
     resources.folder = path.parent_path();
+    resources.allowed = options.allowed_folders;
     resources.inputs.push_back(path);
     const Bytes bytes = resources.keep(std::move(*file));
     resources.hash.add(bytes);
@@ -74,7 +75,7 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     if (report.failed()) {
         return scene;
     }
-    const SceneNodes nodes = walk_scene(*document, report);
+    const SceneNodes nodes = walk_scene(*document, resources.buffers, report);
     if (report.failed()) {
         return scene;
     }
@@ -86,8 +87,8 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
         }
     }
     build_materials(*document, nodes.meshes, options.metres_per_unit, resources, scene, report);
-    build_primitives(*document, nodes.meshes, resources.buffers, options.metres_per_unit, scene,
-                     report);
+    build_primitives(*document, nodes.meshes, resources.buffers,
+                     {options.metres_per_unit, options.smooth_angle}, scene, report);
     build_lights(*document, nodes.lights, options.metres_per_unit, scene, report);
     const auto is_empty = [](const Primitive& primitive) { return primitive.index.empty(); };
     if (report.failed()) {
@@ -113,13 +114,19 @@ Result<ImportedScene> import_gltf(const std::filesystem::path& path, const Impor
                           "metres per unit is " + std::to_string(options.metres_per_unit),
                           "give a number above 0");
     }
+    if (!(options.smooth_angle >= 0.0 && options.smooth_angle <= 180.0)) {
+        return make_error(ErrorKind::usage, report.file, "",
+                          "the angle of smooth normals is " + std::to_string(options.smooth_angle),
+                          "give 0 to 180 degrees");
+    }
     try {
         std::string media;
         Scene scene = import(path, options, media, report);
         if (report.failed()) {
             return report.take_error();
         }
-        return ImportedScene{std::move(scene), report.take_warnings(), std::move(media)};
+        return ImportedScene{std::move(scene), report.take_warnings(), std::move(media),
+                             std::move(report.notes)};
     } catch (const std::bad_alloc&) {
         return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
                           "split or simplify the scene");
@@ -132,6 +139,29 @@ Result<ImportedScene> import_gltf(const std::filesystem::path& path, const Impor
                           "it cannot be read: " + json_fault(problem.what()),
                           "export the file again");
     }
+}
+
+std::vector<Diagnostic> warn_of_unstated_metals(const Scene& scene) {
+    constexpr std::size_t kShown = 4;
+    std::string names;
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+        const Material& material = scene.materials[i];
+        if (!material.is_unstated_metal || material.medium || material.gloss.metallic < 1) {
+            continue;
+        }
+        if (++count <= kShown) {
+            names += (names.empty() ? "" : ", ") + label("material", i, material.name);
+        }
+    }
+    if (count == 0) {
+        return {};
+    }
+    return {make_warning(
+        scene.source, names + (count > kShown ? " and more" : ""),
+        "the file states neither metallicFactor nor roughnessFactor: it is baked as a rough metal, "
+        "glTF's default",
+        "set metallicFactor to 0 (Blender: use a Principled BSDF), or give a medium by --media")};
 }
 
 }  // namespace opaline::formats

@@ -17,6 +17,7 @@ inline constexpr std::uint64_t kMaxWorldVertices = 200'000'000;  ///< over all i
 inline constexpr std::uint64_t kMaxWorldIndices = 1'200'000'000;
 inline constexpr std::size_t kMaxWorldPrimitives = 1u << 20;
 inline constexpr std::size_t kMaxWorldLights = 4096;
+inline constexpr std::size_t kMaxWorldJoints = 1u << 20;          ///< of all skinned meshes
 inline constexpr std::uint64_t kMaxImplicitElements = 4'000'000;  ///< accessor without buffer view
 inline constexpr std::uint32_t kMaxImageSide = 16384;
 inline constexpr std::uint64_t kMaxImagePixels = 1ull << 27;

@@ -24,6 +24,18 @@ TextureWrap wrap_mode(std::uint32_t value, const std::string& where, Report& rep
     }
 }
 
+// Values at texel centres are the same either way: what is asked for when an image is magnified
+// decides, and where the file leaves that open, what is asked for when it is not.
+bool is_nearest_sampler(const Sampler& sampler) {
+    constexpr std::uint32_t kNearest = 9728, kNearestMipmapNearest = 9984,
+                            kNearestMipmapLinear = 9986;
+    if (sampler.mag_filter != kNone) {
+        return sampler.mag_filter == kNearest;
+    }
+    return sampler.min_filter == kNearest || sampler.min_filter == kNearestMipmapNearest ||
+           sampler.min_filter == kNearestMipmapLinear;
+}
+
 }  // namespace
 
 std::optional<Image8> TextureLoader::decode_image(std::uint32_t index) {
@@ -69,7 +81,7 @@ LoadedTexture TextureLoader::load_inner(std::uint32_t texture, const std::string
 
 LoadedTexture TextureLoader::load_into(std::vector<Image8>& images, Known& known,
                                        std::uint32_t texture, const std::string& where) {
-    LoadedTexture loaded;
+    LoadedTexture loaded = sampler_of(texture);
     const Texture& source = document_.textures[texture];
     if (const auto found = known.find(source.image); found != known.end()) {
         loaded.image = found->second;
@@ -83,11 +95,21 @@ LoadedTexture TextureLoader::load_into(std::vector<Image8>& images, Known& known
             known[source.image] = loaded.image;
         }
     }
+    return loaded;
+}
+
+LoadedTexture TextureLoader::sampler_of(std::uint32_t texture) {
+    LoadedTexture loaded;
+    const Texture& source = document_.textures[texture];
     if (source.sampler != kNone) {
         const Sampler& sampler = document_.samplers[source.sampler];
         const std::string at = "sampler " + std::to_string(source.sampler);
         loaded.wrap_u = wrap_mode(sampler.wrap_s, at, report_);
         loaded.wrap_v = wrap_mode(sampler.wrap_t, at, report_);
+        if (is_nearest_sampler(sampler)) {
+            loaded.wrap_u = nearest(loaded.wrap_u);
+            loaded.wrap_v = nearest(loaded.wrap_v);
+        }
     }
     return loaded;
 }

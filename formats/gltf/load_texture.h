@@ -30,6 +30,8 @@ class TextureLoader {
     LoadedTexture load(std::uint32_t texture, const std::string& where);
     /// The same with the image in Scene::inner_images.
     LoadedTexture load_inner(std::uint32_t texture, const std::string& where);
+    /// How a texture is looked up, without its image.
+    LoadedTexture sampler_of(std::uint32_t texture);
     /// Decodes the image without adding it to the scene. Nothing if it cannot be read.
     std::optional<Image8> decode(std::uint32_t texture, const std::string& where);
 

@@ -1,16 +1,20 @@
 #include "formats/gltf/map_sheet.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "formats/gltf/clamp_factor.h"
+#include "formats/opal/thin_glass.h"
 
 namespace opaline::formats::gltf {
 
 namespace {
 
-// Light that leaves on the side where it came from, and on the other one.
+// Light that leaves on the side where it came from, and on the other one; and the share of what
+// enters that passes without being scattered, as thin glass lets it.
 struct Sides {
     glm::dvec3 reflected, transmitted;
+    double clear = 0;
 };
 
 bool scatters_no_light(glm::dvec3 color) {
@@ -33,11 +37,8 @@ std::optional<Sides> scatter(const TranslucencySource& source, glm::dvec3 base,
     const glm::dvec3 scattered =
         let_in * strength * base *
         clamp_color(source.multiscatter_color, "the multiscatter colour", remarks);
-    if (strength < 1.0) {
-        remarks.push_back(
-            "scatterStrengthFactor below 1 lets light through unscattered, which is not simulated");
-    }
-    return Sides{(1.0 - let_in) * base + 0.5 * (1.0 - g) * scattered, 0.5 * (1.0 + g) * scattered};
+    return Sides{(1.0 - let_in) * base + 0.5 * (1.0 - g) * scattered, 0.5 * (1.0 + g) * scattered,
+                 let_in * (1.0 - strength)};
 }
 
 std::optional<Sides> transmit_diffusely(const TranslucencySource& source, glm::dvec3 base,
@@ -53,15 +54,77 @@ std::optional<Sides> transmit_diffusely(const TranslucencySource& source, glm::d
         remarks.push_back("baseColorTexture colours diffusely transmitted light as well");
     }
     const double clear = clamp_factor(source.transmission, 0.0, 1.0, "transmissionFactor", remarks);
-    if (clear > 0.0) {
-        remarks.push_back(
-            "what KHR_materials_transmission lets through is not simulated: the "
-            "diffuse part is baked alone");
-    }
     return Sides{(1.0 - clear) * (1.0 - f) * base,
                  (1.0 - clear) * f *
                      clamp_color(source.diffuse_transmission_color,
-                                 "diffuseTransmissionColorFactor", remarks)};
+                                 "diffuseTransmissionColorFactor", remarks),
+                 clear};
+}
+
+std::optional<Sides> transmit_straight(const TranslucencySource& source, glm::dvec3 base,
+                                       std::vector<std::string>& remarks) {
+    if (!(source.transmission > 0.0)) {
+        return std::nullopt;
+    }
+    const double clear = clamp_factor(source.transmission, 0.0, 1.0, "transmissionFactor", remarks);
+    return Sides{(1.0 - clear) * base, glm::dvec3(0), clear};
+}
+
+// Means over even light, with the cosine: what one smooth face lets through, and what two do.
+struct EvenTransmittance {
+    double face = 0, pane = 0;
+};
+EvenTransmittance even_transmittance(float eta) {
+    constexpr int kSteps = 256;
+    EvenTransmittance mean;
+    for (int i = 0; i < kSteps; ++i) {
+        const double cosine = (i + 0.5) / kSteps;
+        const double pane =
+            static_cast<double>(thin_glass_transmittance(static_cast<float>(cosine), eta));
+        mean.pane += 2 * cosine / kSteps * pane;
+        mean.face += 2 * cosine / kSteps * 2 * pane / (1 + pane);  // T = (1 - R) / (1 + R)
+    }
+    return mean;
+}
+
+// The index of refraction of a dielectric that reflects that share along its normal.
+float index_of(double reflectance) {
+    const double root = std::sqrt(reflectance);
+    return root < 0.999 ? static_cast<float>((1 + root) / (1 - root)) : 0.0f;
+}
+
+// Splits what passes unscattered. Of a smooth surface of perceptual roughness r, (1 - r)^2 goes
+// straight; the rest leaves diffusely on the other side. Rays meet the surface with the share
+// 1 - clear T, and it is then that the rest counts: sides and gloss are divided by that share. The
+// faces mirror before anything else, two of them where light passes.
+void make_glass(const TranslucencySource& source, glm::dvec3 base, Sides& sides, MappedSheet& to,
+                std::vector<std::string>& remarks) {
+    const double metallic = std::clamp(source.metallic, 0.0, 1.0);
+    const double roughness = std::clamp(source.roughness, 0.0, 1.0);
+    const double smooth = (1 - roughness) * (1 - roughness) * sides.clear;
+    const double straight = (1 - metallic) * smooth;
+    sides.transmitted += (sides.clear - smooth) * base;
+    const Rgb tint{static_cast<float>(base.x), static_cast<float>(base.y),
+                   static_cast<float>(base.z)};
+    const double passes = straight * static_cast<double>(luminance(tint));
+    const double ior = source.ior == 0.0 ? 0.0 : std::max(source.ior, 1.0);
+    to.sheet.eta = static_cast<float>(std::min(ior, 1e4));
+    to.sheet.clear = static_cast<float>(passes);
+    const EvenTransmittance even = even_transmittance(to.sheet.eta);
+    const double mirrored = 1 - (1 - straight) * even.face - straight * even.pane;
+    const double met = 1 - passes * even.pane;
+    const double scale = met - mirrored > 1e-4 ? (1 - mirrored) / (met - mirrored) : 0.0;
+    sides.reflected *= scale;
+    sides.transmitted *= scale;
+    const double root = (ior - 1) / (ior + 1), face = root * root;  // along the normal
+    const double pane = (1 - face) / (1 + face);
+    to.mirror_ior = index_of(
+        std::min(1.0, (1 - (1 - straight) * (1 - face) - straight * pane) / (1 - passes * pane)));
+    if (straight > 0 && (base.x != base.y || base.y != base.z)) {
+        remarks.push_back(
+            "the colour of thin glass dims what passes it straight by its luminance alone: what is "
+            "seen and lit through it is not coloured");
+    }
 }
 
 }  // namespace
@@ -78,7 +141,17 @@ std::optional<MappedSheet> map_sheet(const TranslucencySource& source, Rgb base_
         sides = transmit_diffusely(source, base, has_base_color_texture, remarks);
     }
     if (!sides) {
+        sides = transmit_straight(source, base, remarks);
+    }
+    if (!sides) {
         return std::nullopt;
+    }
+    MappedSheet mapped;
+    if (sides->clear > 0) {
+        make_glass(source, base, *sides, mapped, remarks);
+        if (has_base_color_texture) {
+            remarks.push_back("baseColorTexture does not tint what passes thin glass straight");
+        }
     }
     std::vector<std::string> textures = source.textures;
     if (source.scatter_strength_texture.texture != kNone) {
@@ -100,9 +173,11 @@ std::optional<MappedSheet> map_sheet(const TranslucencySource& source, Rgb base_
         const glm::dvec3 s = part / glm::max(larger, glm::dvec3(1e-30));
         return Rgb{static_cast<float>(s.x), static_cast<float>(s.y), static_cast<float>(s.z)};
     };
-    return MappedSheet{
-        {static_cast<float>(larger.x), static_cast<float>(larger.y), static_cast<float>(larger.z)},
-        {share(sides->reflected), share(sides->transmitted)}};
+    mapped.base_color = {static_cast<float>(larger.x), static_cast<float>(larger.y),
+                         static_cast<float>(larger.z)};
+    mapped.sheet.reflect = share(sides->reflected);
+    mapped.sheet.transmit = share(sides->transmitted);
+    return mapped;
 }
 
 }  // namespace opaline::formats::gltf

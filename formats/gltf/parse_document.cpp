@@ -16,8 +16,12 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "formats/gltf/instances.h"
 #include "formats/gltf/read_lights.h"
+#include "formats/gltf/read_skins.h"
+#include "formats/gltf/read_specular_glossiness.h"
 #include "formats/gltf/read_texture_use.h"
 #include "formats/gltf/read_translucency.h"
 
@@ -97,6 +101,7 @@ Accessor convert(const tinygltf::Accessor& in, int no_view) {
 Mesh convert(const tinygltf::Mesh& in) {
     Mesh out;
     out.name = in.name;
+    out.weights = in.weights;
     for (const tinygltf::Primitive& primitive : in.primitives) {
         MeshPrimitive& copy = out.primitives.emplace_back();
         for (const auto& [semantic, accessor] : primitive.attributes) {
@@ -105,7 +110,12 @@ Mesh convert(const tinygltf::Mesh& in) {
         copy.indices = link(primitive.indices);
         copy.material = link(primitive.material);
         copy.mode = static_cast<Mode>(primitive.mode);
-        copy.has_morph_targets = !primitive.targets.empty();
+        for (const auto& target : primitive.targets) {
+            Attributes& added = copy.targets.emplace_back();
+            for (const auto& [semantic, accessor] : target) {
+                added.emplace(semantic, link(accessor));
+            }
+        }
     }
     return out;
 }
@@ -166,7 +176,8 @@ Node convert(const tinygltf::Node& in, std::size_t index, Report& report) {
         out.children.push_back(link(child));
     }
     out.local = local_transform(in, label("node", index, in.name), report);
-    out.has_skin = in.skin >= 0;
+    out.skin = link(in.skin);
+    out.weights = in.weights;
     out.has_camera = in.camera >= 0;
     out.extensions = names_of(in.extensions);
     return out;
@@ -264,6 +275,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     Document document;
     document.images = read_images(root, report);
     document.lights = read_lights(root, report);
+    document.skins = read_skins(root, report);
     document.has_animations = root.contains("animations") && !root["animations"].empty();
     if (const auto scene = root.find("scene"); scene != root.end()) {
         document.default_scene = scene->get<std::uint32_t>();
@@ -278,7 +290,9 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     const std::string text = root.dump(-1, ' ', true, Json::error_handler_t::replace);
     const std::vector<TranslucencySource> translucency = read_translucency(root, report);
     const std::vector<EmissionSource> emission = read_emission(root, report);
+    const auto specular_glossiness = read_specular_glossiness(root, report);
     const std::vector<std::uint32_t> node_lights = read_node_lights(root, report);
+    std::vector<Attributes> node_instances = read_node_instances(root, report);
     root = nullptr;
 
     tinygltf::TinyGLTF reader;
@@ -308,6 +322,7 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
         document.nodes.push_back(convert(model.nodes[i], i, report));
         document.nodes.back().light = node_lights.at(i);
+        document.nodes.back().instances = std::move(node_instances.at(i));
     }
     for (const auto& scene : model.scenes) {
         auto& roots = document.scenes.emplace_back();
@@ -319,12 +334,14 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
         document.materials.push_back(convert(model.materials[i], i, report));
         document.materials.back().translucency = translucency.at(i);
         document.materials.back().emission = emission.at(i);
+        document.materials.back().specular_glossiness = specular_glossiness.at(i);
     }
     for (const auto& texture : model.textures) {
         document.textures.push_back({link(texture.source), link(texture.sampler)});
     }
     for (const auto& sampler : model.samplers) {
-        document.samplers.push_back({link(sampler.wrapS), link(sampler.wrapT)});
+        document.samplers.push_back({link(sampler.wrapS), link(sampler.wrapT),
+                                     link(sampler.magFilter), link(sampler.minFilter)});
     }
     return document;
 }

@@ -39,10 +39,20 @@ struct Reader {
     std::vector<float> attribute(const std::string& semantic, std::uint32_t min_components,
                                  std::uint32_t max_components, std::uint64_t vertices,
                                  const char* count_remedy) const {
-        const auto found = primitive.attributes.find(semantic);
-        if (found == primitive.attributes.end()) {
+        return values(primitive.attributes, "", semantic, min_components, max_components, vertices,
+                      count_remedy);
+    }
+
+    /// The same of a morph target, whose messages begin with `prefix`.
+    std::vector<float> values(const Attributes& attributes, const std::string& prefix,
+                              const std::string& name, std::uint32_t min_components,
+                              std::uint32_t max_components, std::uint64_t vertices,
+                              const char* count_remedy) const {
+        const auto found = attributes.find(name);
+        if (found == attributes.end()) {
             return {};
         }
+        const std::string semantic = prefix + name;
         const Accessor& accessor = document.accessors[found->second];
         if (accessor.is_matrix || accessor.components < min_components ||
             accessor.components > max_components || accessor.type == ComponentType::uint32) {
@@ -122,13 +132,81 @@ std::vector<std::uint32_t> triangulate(Mode mode, std::vector<std::uint32_t> dra
     return triangles;
 }
 
+/// glTF 2.0, 3.7.2.2: attribute + sum of weight * target. Of TANGENT, the sign stays.
+void add_morph_targets(const Reader& reader, const std::vector<double>& weights,
+                       std::uint64_t vertices, PrimitiveData& data) {
+    const auto& targets = reader.primitive.targets;
+    for (std::size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
+        const auto weight = static_cast<float>(weights[t]);
+        if (weight == 0) {
+            continue;
+        }
+        const std::string prefix = "morph target " + std::to_string(t) + " ";
+        const auto add = [&](const char* semantic, std::size_t stride, std::vector<float>& to) {
+            if (to.empty()) {
+                return;  // not in the file, not wanted, or at fault
+            }
+            const std::vector<float> moved = reader.values(
+                targets[t], prefix, semantic, 3, 3, vertices, "export with one value per vertex");
+            for (std::size_t i = 0; i < moved.size(); ++i) {
+                to[i / 3 * stride + i % 3] += weight * moved[i];
+            }
+        };
+        add("POSITION", 3, data.position);
+        add("NORMAL", 3, data.normal);
+        add("TANGENT", 4, data.tangent);
+    }
+}
+
+/// JOINTS_n and WEIGHTS_n for n = 0, 1, ...
+void read_joints(const Reader& reader, std::uint64_t vertices, PrimitiveData& data) {
+    std::vector<std::vector<float>> joints, weights;
+    for (std::size_t set = 0;; ++set) {
+        const std::string n = std::to_string(set);
+        const auto& attributes = reader.primitive.attributes;
+        const bool has_joints = attributes.contains("JOINTS_" + n);
+        const bool has_weights = attributes.contains("WEIGHTS_" + n);
+        if (has_joints != has_weights) {
+            reader.report.error(
+                reader.where, "it has only one of JOINTS_" + n + " and WEIGHTS_" + n, kExportAgain);
+            return;
+        }
+        if (!has_joints) {
+            break;
+        }
+        constexpr const char* kRemedy = "export with one value per vertex";
+        joints.push_back(reader.attribute("JOINTS_" + n, 4, 4, vertices, kRemedy));
+        weights.push_back(reader.attribute("WEIGHTS_" + n, 4, 4, vertices, kRemedy));
+        const Accessor& joint = reader.document.accessors[attributes.at("JOINTS_" + n)];
+        if ((joint.type != ComponentType::uint8 && joint.type != ComponentType::uint16) ||
+            joint.normalized) {
+            reader.report.error(reader.where,
+                                "JOINTS_" + n + " has " + name_of(joint.type) +
+                                    ", expected UNSIGNED_BYTE or UNSIGNED_SHORT",
+                                kExportAgain);
+        }
+        if (joints.back().empty() || weights.back().empty()) {
+            return;  // at fault
+        }
+    }
+    for (std::size_t v = 0; v < vertices; ++v) {
+        for (std::size_t set = 0; set < joints.size(); ++set) {
+            const auto from = static_cast<std::ptrdiff_t>(4 * v);
+            data.joint.insert(data.joint.end(), joints[set].begin() + from,
+                              joints[set].begin() + from + 4);
+            data.weight.insert(data.weight.end(), weights[set].begin() + from,
+                               weights[set].begin() + from + 4);
+        }
+    }
+}
+
 }  // namespace
 
 std::optional<PrimitiveData> read_primitive(const Document& document,
                                             const std::vector<Bytes>& buffers,
                                             const MeshPrimitive& primitive,
-                                            std::uint32_t texcoord_set, bool wants_tangents,
-                                            const std::string& where, Report& report) {
+                                            const WantedData& wanted, const std::string& where,
+                                            Report& report) {
     const Reader reader{document, buffers, primitive, where, report};
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) {
@@ -143,20 +221,24 @@ std::optional<PrimitiveData> read_primitive(const Document& document,
     data.normal =
         reader.attribute("NORMAL", 3, 3, vertices,
                          "export with one normal per vertex, or drop NORMAL to have it computed");
-    if (wants_tangents) {
+    if (wanted.tangents) {
         data.tangent = reader.attribute("TANGENT", 4, 4, vertices,
                                         "export with one tangent per vertex, or drop TANGENT to "
                                         "have it computed");
     }
-    if (texcoord_set != kNone) {
-        data.texcoord = reader.attribute("TEXCOORD_" + std::to_string(texcoord_set), 2, 2, vertices,
-                                         "export with one coordinate per vertex");
+    if (wanted.texcoord_set != kNone) {
+        data.texcoord = reader.attribute("TEXCOORD_" + std::to_string(wanted.texcoord_set), 2, 2,
+                                         vertices, "export with one coordinate per vertex");
     }
     if (const auto color = primitive.attributes.find("COLOR_0");
         color != primitive.attributes.end()) {
         data.color =
             reader.attribute("COLOR_0", 3, 4, vertices, "export with one colour per vertex");
         data.color_components = document.accessors[color->second].components;
+    }
+    add_morph_targets(reader, wanted.morph_weights, vertices, data);
+    if (wanted.joints) {
+        read_joints(reader, vertices, data);
     }
     const auto bad = std::find_if(data.position.begin(), data.position.end(),
                                   [](float x) { return !std::isfinite(x); });

@@ -18,18 +18,28 @@ struct PrimitiveData {
     std::vector<float> tangent;   ///< 4 per vertex, as stored; empty if there is none or not wanted
     std::vector<float> texcoord;  ///< 2 per vertex, as stored; empty if there is none
     std::vector<float> color;     ///< `color_components` per vertex; empty if there is none
+    std::vector<float> joint;     ///< a multiple of 4 per vertex: numbers of a skin's joints, all
+                                  ///< sets of a vertex together; empty if there are none
+    std::vector<float> weight;    ///< of each joint
     std::uint32_t color_components = 3;
     std::vector<std::uint32_t> index;  ///< triangles, each < vertex count
 };
 
-/// Reads the attributes that Opaline uses and makes a triangle list of strips, fans and
-/// primitives without indices. `texcoord_set` is kNone where no texture needs one; TANGENT is read
-/// where `wants_tangents`. Nothing and
+/// What is read of a primitive besides positions, normals, colours and indices.
+struct WantedData {
+    std::uint32_t texcoord_set = 0;  ///< kNone: no texture coordinates
+    bool tangents = false;
+    bool joints = false;
+    const std::vector<double>& morph_weights;  ///< by morph target; those past the last are unused
+};
+
+/// Reads the attributes that Opaline uses, adds what morph targets of a weight other than 0 say,
+/// and makes a triangle list of strips, fans and primitives without indices. Nothing and
 /// errors named after `where` if the primitive does not conform. Precondition: a triangle mode.
 std::optional<PrimitiveData> read_primitive(const Document& document,
                                             const std::vector<Bytes>& buffers,
                                             const MeshPrimitive& primitive,
-                                            std::uint32_t texcoord_set, bool wants_tangents,
-                                            const std::string& where, Report& report);
+                                            const WantedData& wanted, const std::string& where,
+                                            Report& report);
 
 }  // namespace opaline::formats::gltf

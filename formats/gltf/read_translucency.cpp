@@ -72,10 +72,11 @@ void read_surface(const Json& material, const Json& extensions, const std::strin
         pbr.number("metallicFactor", out.metallic);
         pbr.number("roughnessFactor", out.roughness);
         note_texture(pbr, "metallicRoughnessTexture", out);
+        out.states_reflection = pbr.object.contains("metallicFactor") ||
+                                pbr.object.contains("roughnessFactor") ||
+                                pbr.object.contains("metallicRoughnessTexture");
     });
-    out.is_diffuse = extensions.contains("KHR_materials_unlit") ||
-                     (extensions.contains("KHR_materials_pbrSpecularGlossiness") &&
-                      !material.contains("pbrMetallicRoughness"));
+    out.is_diffuse = extensions.contains("KHR_materials_unlit");
     out.has_ior = read_extension(extensions, "KHR_materials_ior", where, report,
                                  [&](const NamedObject& ior) { ior.number("ior", out.ior); });
     out.has_specular = read_extension(extensions, "KHR_materials_specular", where, report,

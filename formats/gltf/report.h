@@ -19,6 +19,7 @@ struct Report {
     std::string file;
     ErrorKind kind = ErrorKind::bad_input;
     std::vector<Diagnostic> errors, warnings;
+    std::vector<std::string> notes;  ///< what a conforming file leaves to the reader
     std::size_t errors_left_out = 0, warnings_left_out = 0;
 
     void error(std::string where, std::string fault, std::string remedy = {});

@@ -89,9 +89,18 @@ std::optional<Bytes> read_data_uri(Resources& resources, std::string_view uri,
     return resources.keep(std::move(*bytes));
 }
 
-constexpr const char* kKeepInside = "keep what a file refers to in its folder, with relative paths";
+constexpr const char* kKeepInside =
+    "keep what a file refers to in its folder, or allow another folder with --allow-path DIR";
 
-/// `name` as a path if it stays inside the asset's folder.
+/// Whether `file`, canonical, lies in `folder` after its own links.
+bool is_within(const std::filesystem::path& folder, const std::filesystem::path& file) {
+    std::error_code code;
+    const auto base = std::filesystem::canonical(folder.empty() ? "." : folder, code);
+    const auto [end, unused] = std::mismatch(base.begin(), base.end(), file.begin(), file.end());
+    return !code && end == base.end();
+}
+
+/// `name` as a path below the asset's folder, or an absolute one, if it may be opened.
 std::optional<std::filesystem::path> confined_path(const Resources& resources,
                                                    std::string_view name, const std::string& where,
                                                    Report& report) {
@@ -99,26 +108,21 @@ std::optional<std::filesystem::path> confined_path(const Resources& resources,
         report.error(where, "its URI " + in_quotes(name) + " is malformed", kKeepInside);
         return std::nullopt;
     }
-    const std::filesystem::path relative(name);
-    const bool climbs = std::find(relative.begin(), relative.end(), "..") != relative.end();
-    if (has_scheme(name) || relative.is_absolute() || climbs ||
-        name.find('\\') != std::string_view::npos) {
+    const std::filesystem::path path(name);
+    std::error_code code;
+    const auto file = std::filesystem::weakly_canonical(
+        (resources.folder.empty() ? std::filesystem::path(".") : resources.folder) / path, code);
+    const bool is_allowed =
+        !code && !has_scheme(name) && name.find('\\') == std::string_view::npos &&
+        (is_within(resources.folder, file) ||
+         std::any_of(resources.allowed.begin(), resources.allowed.end(),
+                     [&](const std::filesystem::path& folder) { return is_within(folder, file); }));
+    if (!is_allowed) {
         report.error(where, "its URI " + in_quotes(name) + " leaves the asset's folder",
                      kKeepInside);
         return std::nullopt;
     }
-    std::error_code code;
-    const auto base = std::filesystem::weakly_canonical(
-        resources.folder.empty() ? std::filesystem::path(".") : resources.folder, code);
-    const auto full = std::filesystem::weakly_canonical(base / relative, code);
-    const auto [end, unused] = std::mismatch(base.begin(), base.end(), full.begin(), full.end());
-    if (code || end != base.end()) {
-        report.error(where,
-                     "its URI " + in_quotes(name) + " leaves the asset's folder through a link",
-                     kKeepInside);
-        return std::nullopt;
-    }
-    return relative;
+    return path;
 }
 
 bool is_meshopt_placeholder(const Json& buffer) {
@@ -141,17 +145,17 @@ Bytes Resources::keep(std::vector<std::byte> bytes) {
 
 std::optional<Bytes> read_inside(Resources& resources, std::string_view name,
                                  const std::string& where, Report& report) {
-    const auto relative = confined_path(resources, name, where, report);
-    if (!relative) {
+    const auto confined = confined_path(resources, name, where, report);
+    if (!confined) {
         return std::nullopt;
     }
-    const auto path = resources.folder / *relative;
+    const auto path = resources.folder / *confined;
     std::error_code code;
     const auto key = std::filesystem::weakly_canonical(path, code);
     if (const auto known = resources.files.find(key); known != resources.files.end()) {
         return known->second;
     }
-    auto bytes = read_whole_file(path, where + " (" + in_quotes(relative->string()) + ")", report);
+    auto bytes = read_whole_file(path, where + " (" + in_quotes(confined->string()) + ")", report);
     if (!bytes) {
         return std::nullopt;
     }

@@ -23,7 +23,8 @@ using Bytes = std::span<const std::byte>;
 /// All files of an asset. Each is read and hashed once, in reading order, and its bytes stay in
 /// place until the import ends. No other code reads files.
 struct Resources {
-    std::filesystem::path folder;                  ///< of the asset; no file outside is opened
+    std::filesystem::path folder;                  ///< of the asset
+    std::vector<std::filesystem::path> allowed;    ///< no file outside of these and it is opened
     std::deque<std::vector<std::byte>> storage;    ///< owns what `buffers` and callers point into
     std::vector<Bytes> buffers;                    ///< by glTF buffer index
     std::map<std::filesystem::path, Bytes> files;  ///< external files by their real path
@@ -34,8 +35,8 @@ struct Resources {
     Bytes keep(std::vector<std::byte> bytes);
 };
 
-/// The bytes of a file named relative to the asset's folder, which it must not leave, neither by
-/// its name nor through symbolic links.
+/// The bytes of a file named relative to the asset's folder, or absolutely. The file itself, after
+/// symbolic links and "..", must lie in that folder or in an allowed one.
 std::optional<Bytes> read_inside(Resources& resources, std::string_view name,
                                  const std::string& where, Report& report);
 

@@ -64,12 +64,12 @@ glm::vec4 with_sign(glm::dvec3 direction, float sign) {
 
 }  // namespace
 
-std::vector<glm::vec4> turn_tangents(const std::vector<float>& stored, const glm::dmat4& world) {
-    const glm::dmat3 linear(world);
-    const float handed = glm::determinant(linear) < 0.0 ? -1.0f : 1.0f;
+std::vector<glm::vec4> turn_tangents(const std::vector<float>& stored, const Placement& placement) {
+    const float handed = placement.is_mirrored ? -1.0f : 1.0f;
     std::vector<glm::vec4> turned(stored.size() / 4, glm::vec4(0.0f));
     for (std::size_t i = 0; i < turned.size(); ++i) {
-        const glm::vec3 t(linear * glm::dvec3(stored[4 * i], stored[4 * i + 1], stored[4 * i + 2]));
+        const glm::vec3 t(glm::dmat3(placement.at(i)) *
+                          glm::dvec3(stored[4 * i], stored[4 * i + 1], stored[4 * i + 2]));
         if (std::isfinite(t.x + t.y + t.z)) {
             turned[i] = glm::vec4(t, stored[4 * i + 3] < 0 ? -handed : handed);
         }

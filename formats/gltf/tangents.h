@@ -3,13 +3,14 @@
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "formats/gltf/placement.h"
 #include "formats/scene.h"
 
 namespace opaline::formats::gltf {
 
-/// TANGENT of glTF (4 values a vertex), turned by a node's transform: directions by its linear
-/// part, signs by its handedness. Lengths are kept; what is not finite becomes zero.
-std::vector<glm::vec4> turn_tangents(const std::vector<float>& stored, const glm::dmat4& world);
+/// TANGENT of glTF (4 values a vertex), turned as the vertices are: directions by the linear part
+/// of the transform, signs by its handedness. Lengths are kept; what is not finite becomes zero.
+std::vector<glm::vec4> turn_tangents(const std::vector<float>& stored, const Placement& placement);
 
 /// Primitive::tangent of a primitive with normals and texture coordinates. What is there already
 /// (turn_tangents) is made perpendicular to the normals and of unit length. Where that leaves no

@@ -99,8 +99,8 @@ void validate_accessor(const Document& document, std::size_t index, Report& repo
         report.error(where, "count is 0, expected at least 1", kExportAgain);
         return;
     }
-    if (accessor.is_matrix) {
-        return;  // only skins use them, and Opaline does not read skins
+    if (accessor.is_matrix && accessor.components != 16) {
+        return;  // nothing reads them, and their columns have gaps
     }
     const std::uint64_t element = component * accessor.components;
     if (accessor.view != kNone) {
@@ -151,6 +151,11 @@ void validate_links(const Document& document, Report& report) {
             for (const auto& [semantic, accessor] : primitive.attributes) {
                 check_link(accessor, document.accessors.size(), where, "accessor", report);
             }
+            for (const Attributes& target : primitive.targets) {
+                for (const auto& [semantic, accessor] : target) {
+                    check_link(accessor, document.accessors.size(), where, "accessor", report);
+                }
+            }
             if (static_cast<std::uint32_t>(primitive.mode) > 6) {
                 report.error(where,
                              "mode is " + number(static_cast<std::uint32_t>(primitive.mode)) +
@@ -168,6 +173,14 @@ void validate_links(const Document& document, Report& report) {
             check_link(use.texture, document.textures.size(), label("material", i, material.name),
                        "texture", report);
         }
+        if (material.specular_glossiness) {
+            for (const TextureUse& use :
+                 {material.specular_glossiness->diffuse_texture,
+                  material.specular_glossiness->specular_glossiness_texture}) {
+                check_link(use.texture, document.textures.size(),
+                           label("material", i, material.name), "texture", report);
+            }
+        }
     }
     for (std::size_t i = 0; i < document.textures.size(); ++i) {
         const std::string where = "texture " + number(i);
@@ -178,6 +191,31 @@ void validate_links(const Document& document, Report& report) {
     for (std::size_t i = 0; i < document.images.size(); ++i) {
         check_link(document.images[i].view, document.views.size(),
                    label("image", i, document.images[i].name), "bufferView", report);
+    }
+}
+
+void validate_skins(const Document& document, Report& report) {
+    for (std::size_t i = 0; i < document.skins.size(); ++i) {
+        const Skin& skin = document.skins[i];
+        const std::string where = "skin " + number(i);
+        for (const std::uint32_t joint : skin.joints) {
+            check_link(joint, document.nodes.size(), where, "joint node", report);
+        }
+        const std::uint32_t bind = skin.inverse_bind_matrices;
+        check_link(bind, document.accessors.size(), where, "accessor", report);
+        if (bind >= document.accessors.size()) {
+            continue;
+        }
+        const Accessor& accessor = document.accessors[bind];
+        if (!accessor.is_matrix || accessor.components != 16 ||
+            accessor.type != ComponentType::float32) {
+            report.error(where, "its inverseBindMatrices are not MAT4 of FLOAT", kExportAgain);
+        } else if (accessor.count < skin.joints.size()) {
+            report.error(where,
+                         "it has " + number(skin.joints.size()) + " joints, but " +
+                             number(accessor.count) + " inverse bind matrices",
+                         kExportAgain);
+        }
     }
 }
 
@@ -192,6 +230,10 @@ void validate_nodes(const Document& document, Report& report) {
         const std::string where = label("node", i, node.name);
         check_link(node.mesh, document.meshes.size(), where, "mesh", report);
         check_link(node.light, document.lights.size(), where, "light", report);
+        check_link(node.skin, document.skins.size(), where, "skin", report);
+        for (const auto& [semantic, accessor] : node.instances) {
+            check_link(accessor, document.accessors.size(), where, "accessor", report);
+        }
         for (const std::uint32_t child : node.children) {
             if (child >= count) {
                 check_link(child, count, where, "child node", report);
@@ -208,23 +250,8 @@ void validate_nodes(const Document& document, Report& report) {
         }
     }
     for (std::size_t s = 0; s < document.scenes.size(); ++s) {
-        const auto& roots = document.scenes[s];
-        std::vector<std::uint32_t> sorted = roots;
-        std::sort(sorted.begin(), sorted.end());
-        for (std::size_t r = 0; r < sorted.size(); ++r) {
-            const std::uint32_t node = sorted[r];
-            const std::string where = "scene " + number(s);
-            if (node >= count) {
-                check_link(node, count, where, "node", report);
-            } else if (r > 0 && sorted[r - 1] == node) {
-                report.error(where, "node " + number(node) + " is listed twice",
-                             "duplicate the node");
-            } else if (parent[node] != kNone) {
-                report.error(where,
-                             "node " + number(node) + " is not a root: it is a child of " +
-                                 number(parent[node]),
-                             "list only root nodes in the scene");
-            }
+        for (const std::uint32_t node : document.scenes[s]) {
+            check_link(node, count, "scene " + number(s), "node", report);
         }
     }
     if (document.default_scene != kNone) {
@@ -265,6 +292,7 @@ void validate_document(const Document& document, const std::vector<Bytes>& buffe
         validate_accessor(document, i, report);
     }
     validate_links(document, report);
+    validate_skins(document, report);
     validate_nodes(document, report);
 }
 

@@ -4,15 +4,20 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfIO.h>
-#include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfInputPart.h>
+#include <OpenEXR/ImfMultiPartInputFile.h>
 
 #include <algorithm>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <optional>
+#include <span>
 #include <stdexcept>
 
+#include "formats/image/chromaticities.h"
 #include "formats/image/exr_header.h"
+#include "formats/image/exr_layer.h"
 #include "formats/image/image_kind.h"
 #include "formats/opal/file_bytes.h"
 
@@ -50,12 +55,13 @@ struct Target {
     float* first = nullptr;
 };
 
-/// Reads channels into interleaved floats, `stride` of them a pixel.
-void read_pixels(const std::string& bytes, const ExrHeader& header, std::span<const Target> targets,
-                 std::size_t stride) {
+/// Reads channels of one part into interleaved floats, `stride` of them a pixel.
+void read_pixels(const std::string& bytes, const ExrHeader& header, std::size_t part,
+                 std::span<const Target> targets, std::size_t stride) {
     namespace imf = OPENEXR_IMF_NAMESPACE;
     MemoryInput stream(bytes);
-    imf::InputFile file(stream, 0);  // no threads of its own
+    imf::MultiPartInputFile parts(stream, 0);  // no threads of its own
+    imf::InputPart file(parts, static_cast<int>(part));
     const std::size_t x_stride = stride * sizeof(float), y_stride = x_stride * header.width;
     const Imath::V2i corner(header.min_x, header.min_y);
     imf::FrameBuffer frame;
@@ -69,20 +75,22 @@ void read_pixels(const std::string& bytes, const ExrHeader& header, std::span<co
 }
 
 /// The channels' names, in a message.
-std::string list_channels(const ExrHeader& header) {
+std::string list_channels(std::span<const ExrHeader> parts) {
     std::string found;
-    for (const auto* list : {&header.full_size, &header.subsampled}) {
-        for (const std::string& channel : *list) {
-            if (found.size() < 60) found += (found.empty() ? "" : ", ") + channel;
+    for (const ExrHeader& header : parts) {
+        for (const auto* list : {&header.full_size, &header.subsampled}) {
+            for (const std::string& channel : *list) {
+                if (found.size() < 60) found += (found.empty() ? "" : ", ") + channel;
+            }
         }
     }
     return found;
 }
 
-/// Vets the header, then calls read(bytes, header); OpenEXR's exceptions become errors.
+/// Vets the headers, then calls read(bytes, headers); OpenEXR's exceptions become errors.
 template <class Read>
 auto read_checked(std::span<const std::byte> bytes, const std::string& name, const Read& read)
-    -> decltype(read(std::string(), ExrHeader())) {
+    -> decltype(read(std::string(), std::vector<ExrHeader>())) {
     if (image_kind(bytes) != ImageKind::exr) {
         return make_error(ErrorKind::bad_input, name, "",
                           "is not an OpenEXR file, whatever its name says",
@@ -90,9 +98,9 @@ auto read_checked(std::span<const std::byte> bytes, const std::string& name, con
     }
     try {
         std::string copy(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-        Result<ExrHeader> header = check_exr_header(copy, name);
-        if (!header) return std::move(header).error();
-        return read(copy, *header);
+        Result<std::vector<ExrHeader>> parts = check_exr_headers(copy, name);
+        if (!parts) return std::move(parts).error();
+        return read(copy, *parts);
     } catch (const std::bad_alloc&) {
         return make_error(ErrorKind::resource, name, "", "does not fit in memory",
                           "use a smaller image");
@@ -103,16 +111,16 @@ auto read_checked(std::span<const std::byte> bytes, const std::string& name, con
     }
 }
 
-Result<ExrImage> read_image(const std::string& bytes, const ExrHeader& header,
+Result<ExrImage> read_image(const std::string& bytes, std::span<const ExrHeader> parts,
                             const std::string& name) {
-    const auto has = [&](std::string_view channel) { return contains(header.full_size, channel); };
-    const bool has_color = has("R") || has("G") || has("B");
-    if (!has_color && (!has("Y") || contains(header.subsampled, "RY"))) {
+    const std::optional<ExrLayer> layer = choose_layer(parts);
+    if (!layer) {
         return make_error(
             ErrorKind::bad_input, name, "",
-            "has no channels R, G, B or Y at full resolution, but: " + list_channels(header),
-            "save the colours as channels R, G and B of the first layer");
+            "has no channels R, G, B or Y at full resolution, but: " + list_channels(parts),
+            "save the colours as channels R, G and B");
     }
+    const ExrHeader& header = parts[layer->part];
     ExrImage result;
     result.envmap = header.envmap;
     result.image = {header.width, header.height, {}};
@@ -120,31 +128,37 @@ Result<ExrImage> read_image(const std::string& bytes, const ExrHeader& header,
     pixel.resize(std::size_t{header.width} * header.height);
     static_assert(sizeof(Rgb) == 3 * sizeof(float));
     std::vector<Target> targets;
-    for (const Target& band : {Target{"R", &pixel.front().r}, Target{"G", &pixel.front().g},
-                               Target{"B", &pixel.front().b}}) {
-        if (has(band.name)) targets.push_back(band);
+    const auto add = [&](const std::optional<std::string>& channel, float* first) {
+        if (channel) targets.push_back({channel->c_str(), first});
+    };
+    add(layer->red, &pixel.front().r);
+    if (!layer->is_grey) {
+        add(layer->green, &pixel.front().g);
+        add(layer->blue, &pixel.front().b);
     }
-    if (!has_color) {
-        targets = {{"Y", &pixel.front().r}};
-    }
-    read_pixels(bytes, header, targets, 3);
-    if (!has_color) {
+    read_pixels(bytes, header, layer->part, targets, 3);
+    if (layer->is_grey) {
         for (Rgb& grey : pixel) {
             grey = {grey.r, grey.r, grey.r};
         }
+    } else if (header.chromaticities) {
+        if (const auto matrix = to_rec709(*header.chromaticities)) {
+            convert_colors(*matrix, pixel);
+        } else {
+            result.warnings.push_back(make_warning(
+                name, "",
+                "its chromaticities are not those of three colours and a white; values "
+                "taken as linear Rec. 709",
+                "correct its chromaticities attribute"));
+        }
     }
-    if (!header.is_rec709) {
+    if (const std::size_t others = count_color_layers(parts); others > 1) {
+        const std::string taken = layer->name.empty() ? "the channels without a layer"
+                                                      : "the layer '" + layer->name + "'";
         result.warnings.push_back(make_warning(
-            name, "", "its chromaticities are not those of Rec. 709; values taken as they are",
-            "convert it to linear Rec. 709 (sRGB primaries)"));
-    }
-    const auto is_layer = [](const std::string& channel) {
-        return channel.find('.') != std::string::npos;
-    };
-    const auto layers = std::count_if(header.full_size.begin(), header.full_size.end(), is_layer);
-    if (layers > 0) {
-        result.warnings.push_back(make_warning(
-            name, "", "channels of other layers are ignored: " + std::to_string(layers)));
+            name, "",
+            "has " + std::to_string(others) + " layers of colours; " + taken +
+                (parts.size() > 1 ? " of part " + std::to_string(layer->part) : "") + " is read"));
     }
     return result;
 }
@@ -152,15 +166,17 @@ Result<ExrImage> read_image(const std::string& bytes, const ExrHeader& header,
 }  // namespace
 
 Result<ExrImage> decode_exr(std::span<const std::byte> bytes, const std::string& name) {
-    return read_checked(bytes, name, [&](const std::string& copy, const ExrHeader& header) {
-        return read_image(copy, header, name);
-    });
+    const auto read = [&](const std::string& copy, const std::vector<ExrHeader>& parts) {
+        return read_image(copy, parts, name);
+    };
+    return read_checked(bytes, name, read);
 }
 
 Result<ScalarImage> decode_exr_channel(std::span<const std::byte> bytes, const std::string& name,
                                        std::initializer_list<const char*> names,
                                        std::uint32_t most_side) {
-    const auto read = [&](const std::string& copy, const ExrHeader& header) -> Result<ScalarImage> {
+    const auto read_part = [&](const std::string& copy, const ExrHeader& header, std::size_t part,
+                               const char* channel) -> Result<ScalarImage> {
         if (std::max(header.width, header.height) > most_side) {
             return make_error(ErrorKind::bad_input, name, "",
                               "has " + std::to_string(header.width) + " x " +
@@ -168,20 +184,26 @@ Result<ScalarImage> decode_exr_channel(std::span<const std::byte> bytes, const s
                                   std::to_string(most_side) + " on a side",
                               "use a smaller image");
         }
+        ScalarImage image{header.width, header.height, {}};
+        image.value.resize(std::size_t{header.width} * header.height);
+        const Target target{channel, image.value.data()};
+        read_pixels(copy, header, part, {&target, 1}, 1);
+        return image;
+    };
+    const auto read = [&](const std::string& copy,
+                          const std::vector<ExrHeader>& parts) -> Result<ScalarImage> {
         std::string wanted;
         for (const char* channel : names) {
-            if (contains(header.full_size, channel)) {
-                ScalarImage image{header.width, header.height, {}};
-                image.value.resize(std::size_t{header.width} * header.height);
-                const Target target{channel, image.value.data()};
-                read_pixels(copy, header, {&target, 1}, 1);
-                return image;
+            for (std::size_t part = 0; part < parts.size(); ++part) {
+                if (!parts[part].is_deep && contains(parts[part].full_size, channel)) {
+                    return read_part(copy, parts[part], part, channel);
+                }
             }
             wanted += (wanted.empty() ? "" : " or ") + std::string(channel);
         }
         return make_error(
             ErrorKind::bad_input, name, "",
-            "has no channel " + wanted + " at full resolution, but: " + list_channels(header),
+            "has no channel " + wanted + " at full resolution, but: " + list_channels(parts),
             "save the values as one of them");
     };
     return read_checked(bytes, name, read);

@@ -18,18 +18,19 @@ namespace opaline::formats {
 enum class Envmap { none, lat_long, cube };
 
 struct ExrImage {
-    Image image;  ///< values as stored: may be negative, infinite or NaN
+    Image image;  ///< linear Rec. 709; values may be negative, infinite or NaN
     Envmap envmap = Envmap::none;
-    std::vector<Diagnostic> warnings;  ///< chromaticities other than Rec. 709, ignored layers
+    std::vector<Diagnostic> warnings;  ///< impossible chromaticities, other layers
 };
 
-/// Decodes an OpenEXR file: single part, scan lines or tiles (first level), channels R, G, B
-/// (any missing one is 0) or else Y (grey); HALF, FLOAT or UINT; every compression.
+/// Decodes an OpenEXR file: scan lines or tiles (first level); HALF, FLOAT or UINT; every
+/// compression. Of several layers or parts, the one with colours that exr_layer.h says. Colours of
+/// other chromaticities are converted to Rec. 709 (chromaticities.h), without clamping.
 /// `name` is used in messages only. Untrusted bytes are safe: the header is checked before
 /// OpenEXR sees it. Errors: bad_input.
 Result<ExrImage> decode_exr(std::span<const std::byte> bytes, const std::string& name);
 
-/// Decodes one channel of such a file: the first of `names` that it holds at full resolution.
+/// Decodes one channel of such a file: the first of `names` that a part holds at full resolution.
 /// Errors: bad_input; also if it holds none of them, or has more than `most_side` pixels on a side,
 /// which is found before any is read.
 Result<ScalarImage> decode_exr_channel(std::span<const std::byte> bytes, const std::string& name,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstring>
 #include <optional>
 #include <string_view>
@@ -12,9 +11,10 @@
 namespace opaline::formats {
 namespace {
 
-constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400;
+constexpr std::uint32_t kTiledFlag = 0x200, kLongNamesFlag = 0x400, kDeepFlag = 0x800,
+                        kPartsFlag = 0x1000;
 constexpr std::uint64_t kMaxChunkBytes = std::uint64_t{1} << 28;  // uncompressed, all channels
-constexpr std::size_t kMaxChannels = 1024;
+constexpr std::size_t kMaxChannels = 1024, kMaxParts = 256;
 
 /// A fault: what was found and expected, and what to do.
 struct Fault {
@@ -65,6 +65,8 @@ struct Parsed {
     std::uint8_t compression = 0;
     std::uint64_t bytes_per_pixel = 0;
     std::optional<TileDescription> tiles;
+    bool is_tiled = false;
+    std::uint64_t chunks = 0;
 };
 
 std::optional<Fault> read_channels(ByteReader in, std::size_t longest_name, Parsed& parsed) {
@@ -89,13 +91,6 @@ std::optional<Fault> read_channels(ByteReader in, std::size_t longest_name, Pars
         }
     }
     return Fault{"its channel list is malformed"};
-}
-
-bool is_rec709(const std::array<float, 8>& xy) {
-    constexpr std::array<float, 8> rec709{0.64f, 0.33f, 0.30f,   0.60f,
-                                          0.15f, 0.06f, 0.3127f, 0.3290f};
-    return std::equal(xy.begin(), xy.end(), rec709.begin(),
-                      [](float a, float b) { return std::abs(a - b) < 2e-3f; });
 }
 
 /// Takes one attribute in; `keep` becomes true if OpenEXR needs to see it too.
@@ -132,7 +127,7 @@ std::optional<Fault> read_attribute(std::string_view name, std::string_view type
         const auto width = in.read<std::uint32_t>(), height = in.read<std::uint32_t>();
         parsed.tiles = TileDescription{width, height, in.read<std::uint8_t>()};
     } else if (name == "chromaticities" && type == "chromaticities" && size == 32) {
-        parsed.header.is_rec709 = is_rec709(in.read<std::array<float, 8>>());
+        parsed.header.chromaticities = in.read<Chromaticities>();
     } else if (name == "envmap" && type == "envmap" && size == 1) {
         const auto value = in.read<std::uint8_t>();
         if (value > 1) return Fault{"its envmap attribute is neither lat-long nor cube"};
@@ -170,8 +165,7 @@ std::uint64_t count_tiles(const TileDescription& tiles, std::uint64_t width, std
     return count;
 }
 
-std::optional<Fault> check_sizes(Parsed& parsed, bool is_tiled, std::uint64_t file_bytes,
-                                 std::uint64_t header_bytes) {
+std::optional<Fault> check_sizes(Parsed& parsed, std::uint64_t file_bytes) {
     if (!parsed.has_channels || !parsed.has_window || !parsed.has_compression) {
         return Fault{"its header lacks channels, dataWindow or compression"};
     }
@@ -197,8 +191,8 @@ std::optional<Fault> check_sizes(Parsed& parsed, bool is_tiled, std::uint64_t fi
         return Fault{"its compression " + std::to_string(parsed.compression) + " is unknown",
                      "save it with ZIP compression"};
     }
-    std::uint64_t chunk_pixels = 0, chunks = 0;
-    if (is_tiled) {
+    std::uint64_t chunk_pixels = 0;
+    if (parsed.is_tiled) {
         const TileDescription tiles = parsed.tiles.value_or(TileDescription{});
         if (tiles.width == 0 || tiles.height == 0 || tiles.width > 16384 || tiles.height > 16384 ||
             (tiles.mode & 15) > 2 || (tiles.mode >> 4) > 1) {
@@ -207,27 +201,76 @@ std::optional<Fault> check_sizes(Parsed& parsed, bool is_tiled, std::uint64_t fi
         // A row of tiles is decoded at a time.
         const std::uint64_t row = std::max<std::uint64_t>(parsed.header.width, tiles.width);
         chunk_pixels = row * tiles.height;
-        chunks = count_tiles(tiles, parsed.header.width, parsed.header.height, file_bytes);
+        parsed.chunks = count_tiles(tiles, parsed.header.width, parsed.header.height, file_bytes);
     } else {
         const std::uint32_t lines = lines_per_chunk[parsed.compression];
         chunk_pixels = std::uint64_t{parsed.header.width} * lines;
-        chunks = (parsed.header.height + lines - 1) / lines;
+        parsed.chunks = (parsed.header.height + lines - 1) / lines;
     }
     if (chunk_pixels * parsed.bytes_per_pixel > kMaxChunkBytes) {
         return Fault{"one of its chunks would take " +
                          std::to_string(chunk_pixels * parsed.bytes_per_pixel) + " bytes",
                      "keep the colour channels only, with smaller tiles"};
     }
-    if (chunks > (file_bytes - header_bytes) / 8) {
-        return Fault{"is cut off: its table of " + std::to_string(chunks) +
-                     " chunks does not fit in the file"};
-    }
     return std::nullopt;
+}
+
+/// The type of a part of several, as its attribute states it.
+std::optional<Fault> read_part_type(std::string_view type, Parsed& parsed) {
+    const bool is_deep = type == "deepscanline" || type == "deeptile";
+    if (!is_deep && type != "scanlineimage" && type != "tiledimage") {
+        return Fault{"has a part of the type '" + std::string(type.substr(0, 60)) + "'",
+                     "save it as a single flat image"};
+    }
+    parsed.header.is_deep = is_deep;
+    parsed.is_tiled = type == "tiledimage" || type == "deeptile";
+    return std::nullopt;
+}
+
+/// Parses one header at `in`, up to and with the zero that ends it. Attributes that OpenEXR need
+/// not see become opaque in `bytes`, which `in` views.
+std::optional<Fault> read_header(std::string& bytes, ByteReader& in, std::uint32_t version,
+                                 Parsed& parsed) {
+    const std::size_t longest_name = (version & kLongNamesFlag) != 0 ? 255 : 31;
+    const bool has_parts = (version & kPartsFlag) != 0;
+    parsed.is_tiled = (version & kTiledFlag) != 0;
+    while (true) {
+        const std::size_t name_at = in.position;
+        const std::string_view attribute = in.read_name(longest_name);
+        if (!in.ok) return Fault{"is cut off or damaged within its header"};
+        if (attribute.empty()) break;
+        const std::size_t type_at = in.position;
+        const std::string_view type = in.read_name(longest_name);
+        const auto size = in.read<std::uint32_t>();
+        if (!in.ok || type.empty() || size > bytes.size() - in.position) {
+            return Fault{"is cut off or damaged within its header"};
+        }
+        bool keep = false;
+        const std::string_view value = in.bytes.substr(in.position, size);
+        if (auto fault =
+                read_attribute(attribute, type, ByteReader{value}, longest_name, parsed, keep)) {
+            return fault;
+        }
+        if (has_parts && attribute == "type") {
+            if (auto fault = read_part_type(value, parsed)) return fault;
+        }
+        // Parts are told apart by these.
+        keep = keep || (has_parts && ((attribute == "type" && type == "string") ||
+                                      (attribute == "name" && type == "string") ||
+                                      (attribute == "chunkCount" && type == "int" && size == 4)));
+        if (!keep) {
+            if (attribute == "type") bytes[name_at] = '~';  // OpenEXR adds its own
+            std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(type_at),
+                      bytes.begin() + static_cast<std::ptrdiff_t>(type_at + type.size()), '~');
+        }
+        in.position += size;
+    }
+    return check_sizes(parsed, bytes.size());
 }
 
 }  // namespace
 
-Result<ExrHeader> check_exr_header(std::string& bytes, const std::string& name) {
+Result<std::vector<ExrHeader>> check_exr_headers(std::string& bytes, const std::string& name) {
     const auto fail = [&](const Fault& fault) -> Error {
         return make_error(ErrorKind::bad_input, name, "", fault.what, fault.remedy);
     };
@@ -236,40 +279,29 @@ Result<ExrHeader> check_exr_header(std::string& bytes, const std::string& name) 
     if (!in.ok || magic != 20000630u) {
         return fail({"is not an OpenEXR file", "give an OpenEXR image"});
     }
-    if ((version & 0xff) != 2 || (version & ~(0xffu | kTiledFlag | kLongNamesFlag)) != 0) {
-        return fail({"is an OpenEXR file with several parts or deep data",
+    const bool has_parts = (version & kPartsFlag) != 0;
+    const std::uint32_t known = kLongNamesFlag | (has_parts ? kPartsFlag | kDeepFlag : kTiledFlag);
+    if ((version & 0xff) != 2 || (version & ~(0xffu | known)) != 0) {
+        return fail({"is an OpenEXR file of deep data, or of a later version",
                      "save it as a single flat image"});
     }
-    const std::size_t longest_name = (version & kLongNamesFlag) != 0 ? 255 : 31;
-    Parsed parsed;
-    while (true) {
-        const std::size_t name_at = in.position;
-        const std::string_view attribute = in.read_name(longest_name);
-        if (!in.ok) return fail({"is cut off or damaged within its header"});
-        if (attribute.empty()) break;
-        const std::size_t type_at = in.position;
-        const std::string_view type = in.read_name(longest_name);
-        const auto size = in.read<std::uint32_t>();
-        if (!in.ok || type.empty() || size > bytes.size() - in.position) {
-            return fail({"is cut off or damaged within its header"});
+    std::vector<ExrHeader> parts;
+    std::uint64_t chunks = 0;
+    do {
+        Parsed parsed;
+        if (auto fault = read_header(bytes, in, version, parsed)) return fail(*fault);
+        chunks += parsed.chunks;
+        parts.push_back(std::move(parsed.header));
+        if (parts.size() > kMaxParts) {
+            return fail({"has more than " + std::to_string(kMaxParts) + " parts",
+                         "keep the part with the colours only"});
         }
-        bool keep = false;
-        const ByteReader content{std::string_view(bytes).substr(in.position, size)};
-        if (auto fault = read_attribute(attribute, type, content, longest_name, parsed, keep)) {
-            return fail(*fault);
-        }
-        if (!keep) {
-            if (attribute == "type") bytes[name_at] = '~';  // OpenEXR adds its own
-            std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(type_at),
-                      bytes.begin() + static_cast<std::ptrdiff_t>(type_at + type.size()), '~');
-        }
-        in.position += size;
+    } while (has_parts && in.position < bytes.size() && bytes[in.position] != '\0');
+    if (chunks > (bytes.size() - in.position) / 8) {
+        return fail({"is cut off: its table of " + std::to_string(chunks) +
+                     " chunks does not fit in the file"});
     }
-    const bool is_tiled = (version & kTiledFlag) != 0;
-    if (auto fault = check_sizes(parsed, is_tiled, bytes.size(), in.position)) {
-        return fail(*fault);
-    }
-    return std::move(parsed.header);
+    return parts;
 }
 
 }  // namespace opaline::formats

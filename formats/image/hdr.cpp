@@ -22,6 +22,9 @@ using Rgbe = std::array<std::uint8_t, 4>;
 
 struct Header {
     std::uint64_t width = 0, height = 0;
+    bool is_column_wise = false;  ///< a scan line is a column of the picture
+    bool is_mirrored = false;     ///< from right to left
+    bool is_upside_down = false;  ///< from the bottom up
     double exposure = 1;
     std::vector<std::string> ignored;  ///< header lines that change colours, not applied
 };
@@ -53,17 +56,31 @@ bool parse_size(std::string_view text, std::uint64_t& value) {
     return error == std::errc() && end == text.data() + text.size() && value > 0;
 }
 
-/// "-Y 512 +X 1024"; empty on success, else what is wrong.
+/// "-Y 512 +X 1024": the scan lines, then the pixels of each, of which axis, and whether it grows
+/// (+) or falls (-). Y grows upwards, X to the right. Empty on success, else what is wrong.
 std::string parse_resolution(std::string_view line, Header& header) {
+    const std::string fault = "has the size line '" + std::string(line.substr(0, 60)) +
+                              "', expected '-Y height +X width', or X before Y, or another sign";
     const std::size_t space = line.find(' ', 3);
-    const bool is_upright = line.starts_with("-Y ") && space != std::string_view::npos &&
-                            line.substr(space).starts_with(" +X ");
-    if (is_upright && parse_size(line.substr(3, space - 3), header.height) &&
-        parse_size(line.substr(space + 4), header.width)) {
-        return {};
+    if (space == std::string_view::npos) return fault;
+    const std::string_view outer = line.substr(0, 3), inner = line.substr(space, 4);
+    const auto is_axis = [](std::string_view text, char axis) {
+        return text == std::string{'+', axis, ' '} || text == std::string{'-', axis, ' '};
+    };
+    header.is_column_wise = is_axis(outer, 'X');
+    const char across = header.is_column_wise ? 'Y' : 'X';
+    std::uint64_t lines = 0, pixels = 0;
+    if ((!header.is_column_wise && !is_axis(outer, 'Y')) || inner.empty() ||
+        !is_axis(inner.substr(1), across) || !parse_size(line.substr(3, space - 3), lines) ||
+        !parse_size(line.substr(space + 4), pixels)) {
+        return fault;
     }
-    return "has the size line '" + std::string(line.substr(0, 60)) +
-           "', expected '-Y height +X width'";
+    const char outer_sign = outer[0], inner_sign = inner[1];
+    header.is_mirrored = (header.is_column_wise ? outer_sign : inner_sign) == '-';
+    header.is_upside_down = (header.is_column_wise ? inner_sign : outer_sign) == '+';
+    header.width = header.is_column_wise ? lines : pixels;
+    header.height = header.is_column_wise ? pixels : lines;
+    return {};
 }
 
 std::string parse_header(Input& in, Header& header) {
@@ -167,7 +184,7 @@ Result<HdrImage> decode_hdr(std::span<const std::byte> bytes, const std::string&
     Input in{{reinterpret_cast<const char*>(bytes.data()), bytes.size()}};
     Header header;
     if (const std::string fault = parse_header(in, header); !fault.empty()) {
-        return fail(fault, "save it as an upright RGBE picture");
+        return fail(fault, "save it as an RGBE picture");
     }
     if (!is_plausible_size(header.width, header.height, bytes.size())) {
         return fail("claims " + std::to_string(header.width) + " x " +
@@ -179,16 +196,21 @@ Result<HdrImage> decode_hdr(std::span<const std::byte> bytes, const std::string&
         HdrImage result;
         result.image.width = static_cast<std::uint32_t>(header.width);
         result.image.height = static_cast<std::uint32_t>(header.height);
-        result.image.pixel.reserve(header.width * header.height);
-        std::vector<Rgbe> row(header.width);
-        for (std::uint64_t y = 0; y < header.height; ++y) {
-            if (!read_row(in, row)) {
-                return fail("is cut off or damaged in row " + std::to_string(y) + " of " +
-                                std::to_string(header.height),
+        result.image.pixel.resize(header.width * header.height);
+        const std::uint64_t lines = header.is_column_wise ? header.width : header.height;
+        std::vector<Rgbe> scan(header.is_column_wise ? header.height : header.width);
+        for (std::uint64_t i = 0; i < lines; ++i) {
+            if (!read_row(in, scan)) {
+                return fail("is cut off or damaged in scan line " + std::to_string(i) + " of " +
+                                std::to_string(lines),
                             "export it again");
             }
-            for (const Rgbe& code : row) {
-                result.image.pixel.push_back(decode_pixel(code, 1.0 / header.exposure));
+            for (std::uint64_t k = 0; k < scan.size(); ++k) {
+                std::uint64_t x = header.is_column_wise ? i : k, y = header.is_column_wise ? k : i;
+                if (header.is_mirrored) x = header.width - 1 - x;
+                if (header.is_upside_down) y = header.height - 1 - y;
+                result.image.pixel[y * header.width + x] =
+                    decode_pixel(scan[k], 1.0 / header.exposure);
             }
         }
         if (header.exposure != 1.0) {

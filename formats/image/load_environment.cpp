@@ -13,6 +13,10 @@
 namespace opaline::formats {
 namespace {
 
+/// Negative values are not worth a word below this share of all light: lossy compression and
+/// colours outside of Rec. 709 leave some.
+constexpr double kSilentNegative = 1e-3;
+
 /// Repairs impossible radiance values and counts them.
 void sanitise(std::vector<Rgb>& pixel, const std::string& name, std::vector<Diagnostic>& warnings) {
     float largest = 0;
@@ -23,12 +27,14 @@ void sanitise(std::vector<Rgb>& pixel, const std::string& name, std::vector<Diag
     }
     const float cap = std::min(largest, kMaxRadiance);
     std::size_t nan = 0, negative = 0, infinite = 0, huge = 0;
+    double light = 0, negative_light = 0;
     const auto repair = [&](float& value) {
         if (std::isnan(value)) {
             ++nan;
             value = 0;
         } else if (value < 0) {
             ++negative;
+            negative_light -= static_cast<double>(value);
             value = 0;
         } else if (std::isinf(value)) {
             ++infinite;
@@ -39,6 +45,7 @@ void sanitise(std::vector<Rgb>& pixel, const std::string& name, std::vector<Diag
         } else {
             value += 0.0f;  // -0 becomes 0
         }
+        light += static_cast<double>(value);
     };
     for (Rgb& c : pixel) {
         repair(c.r);
@@ -52,7 +59,7 @@ void sanitise(std::vector<Rgb>& pixel, const std::string& name, std::vector<Diag
             std::to_string(count) + " of " + std::to_string(3 * pixel.size()) + " values " + what));
     };
     report(nan, "are NaN, taken as 0");
-    report(negative, "are negative, taken as 0");
+    if (negative_light > kSilentNegative * light) report(negative, "are negative, taken as 0");
     report(infinite, "are infinite, taken as the largest finite one");
     report(huge, "exceed 1e30, taken as 1e30");
 }

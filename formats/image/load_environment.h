@@ -26,7 +26,8 @@ inline constexpr float kMaxRadiance = 1e30f;
 ///   orientation.
 /// - else a lat-long map with +X in the centre; a warning if it is not twice as wide as high.
 /// NaN and negative values become 0, infinite ones the largest finite value of the map
-/// (kMaxRadiance at most); each is counted in a warning. Errors: bad_input.
+/// (kMaxRadiance at most); each is counted in a warning, negative ones if they sum up to more than
+/// a thousandth of all light. Errors: bad_input.
 Result<LoadedEnvironment> load_environment(const std::filesystem::path& path);
 
 /// The same from memory; `name` is used in messages only.

@@ -101,6 +101,9 @@ void fill(const MaterialMedium& entry, Material& material, Scene& scene, KnownIm
         material.base_color = material.sheet->opaque_color;
         material.double_sided = material.sheet->opaque_double_sided;
         material.gloss.metallic = material.sheet->opaque_metallic;
+        if (material.sheet->clear > 0) {  // then the gloss is that of what does not pass
+            material.gloss.ior = material.sheet->eta;
+        }
     }
     material.medium = entry.medium;
     material.sheet = entry.sheet;

@@ -112,13 +112,22 @@ float sink(std::vector<float>& field, std::size_t empty) {
     return high - low;
 }
 
+// Texels of a frame that are at 0.
+std::size_t count_empty(const HeightFieldShape& shape) {
+    const auto texels = static_cast<double>(std::size_t{shape.resolution} * shape.resolution);
+    return static_cast<std::size_t>(std::llround((1 - shape.coverage) * texels));
+}
+
 }  // namespace
+
+float find_highest(const HeightFieldShape& shape) {
+    return count_empty(shape) == std::size_t{shape.resolution} * shape.resolution ? 0.0f : 1.0f;
+}
 
 std::vector<float> make_height_field(const HeightFieldShape& shape, std::array<double, 2> size) {
     const std::uint32_t side = shape.resolution;
     const std::size_t texels = std::size_t{side} * side;
-    const auto empty =
-        static_cast<std::size_t>(std::llround((1 - shape.coverage) * static_cast<double>(texels)));
+    const std::size_t empty = count_empty(shape);
     if (empty == texels) {
         return std::vector<float>(texels * shape.frames, 0.0f);
     }

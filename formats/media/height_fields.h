@@ -27,4 +27,7 @@ struct HeightFieldShape {
 /// cells or waves, at least one, fits into `size`. The same values on every run.
 std::vector<float> make_height_field(const HeightFieldShape& shape, std::array<double, 2> size);
 
+/// The largest of these values, without them: 1 or 0.
+float find_highest(const HeightFieldShape& shape);
+
 }  // namespace opaline::formats

@@ -36,25 +36,39 @@ void include(Bounds& bounds, const SparseGrid<float>& grid) {
     }
 }
 
+// One line that says which grids of the file the entry does not use.
+void warn_of_unused(const VolumeEntry& entry, const std::filesystem::path& file,
+                    std::vector<std::string> unread, std::vector<Diagnostic>& warnings) {
+    std::erase_if(unread, [&](const std::string& name) {
+        return name == entry.albedo_grid || name == entry.emission || name == entry.temperature;
+    });
+    std::string list;
+    for (const std::string& name : unread) {
+        list += (list.empty() ? "" : ", ") + in_quotes(name);
+    }
+    if (!list.empty()) {
+        warnings.push_back(
+            make_warning(file.string(), "", "these of its grids are not used: " + list,
+                         "a media file can name one as density, albedo, emission or temperature"));
+    }
+}
+
 // The grid that holds an entry's density.
 Result<VdbGrid> read_density(const VolumeEntry& entry, const std::filesystem::path& file,
-                             const VdbReadOptions& reader) {
-    std::vector<std::string> names;
+                             const VdbReadOptions& reader, std::vector<Diagnostic>& warnings) {
+    std::vector<std::string> names, unread;
     if (!entry.density.empty()) {
         names.push_back(entry.density);
     }
-    auto grids = read_vdb(file, names, reader);
+    auto grids = read_vdb(file, names, reader, &unread);
     if (!grids) {
         return std::move(grids).error();
     }
-    std::erase_if(*grids, [](const VdbGrid& g) { return g.is_color; });
-    const auto usual = std::find_if(grids->begin(), grids->end(),
-                                    [](const VdbGrid& g) { return g.name == "density"; });
-    if (grids->empty()) {
+    if (grids->front().is_color) {
         return make_error(ErrorKind::bad_input, file.string(), in_quotes(entry.density),
                           "it holds colours, not a density", "name a grid of one float a voxel");
     }
-    if (names.empty() && usual == grids->end() && grids->size() > 1) {
+    if (grids->size() > 1) {
         std::string list;
         for (const VdbGrid& g : *grids) {
             list += (list.empty() ? "" : ", ") + in_quotes(g.name);
@@ -63,13 +77,14 @@ Result<VdbGrid> read_density(const VolumeEntry& entry, const std::filesystem::pa
                           "it is not said which of its grids is the density: " + list,
                           "name one in a media file: {\"volumes\": [{\"density\": \"NAME\"}]}");
     }
-    return std::move(usual == grids->end() ? grids->front() : *usual);
+    if (names.empty()) warn_of_unused(entry, file, std::move(unread), warnings);
+    return std::move(grids->front());
 }
 
 Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path& file,
                            double metres_per_unit, const VdbReadOptions& reader,
                            std::vector<Diagnostic>& warnings) {
-    auto read = read_density(entry, file, reader);
+    auto read = read_density(entry, file, reader, warnings);
     if (!read) {
         return std::move(read).error();
     }

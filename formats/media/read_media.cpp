@@ -145,7 +145,9 @@ void read_root(const Json& root, const std::string& where, Resources& resources,
 
 /// Turns what a library throws into a message.
 template <class Read>
-Result<MediaFile> guarded(const std::filesystem::path& path, const Read& read) {
+Result<MediaFile> guarded(const std::filesystem::path& path,
+                          std::span<const std::filesystem::path> allowed_folders,
+                          const Read& read) {
     Report report;
     report.file = path.string();
     try {
@@ -153,6 +155,7 @@ Result<MediaFile> guarded(const std::filesystem::path& path, const Read& read) {
         media.file = report.file;
         Resources resources;
         resources.folder = path.parent_path();
+        resources.allowed.assign(allowed_folders.begin(), allowed_folders.end());
         read(resources, media, report);
         if (report.failed()) {
             return report.take_error();
@@ -172,29 +175,33 @@ Result<MediaFile> guarded(const std::filesystem::path& path, const Read& read) {
 
 }  // namespace
 
-Result<MediaFile> read_media(const std::filesystem::path& path) {
-    return guarded(path, [&](Resources& resources, MediaFile& media, Report& report) {
-        auto bytes = gltf::read_whole_file(path, "", report);
-        if (!bytes) {
-            return;
-        }
-        resources.inputs.push_back(path);
-        const gltf::Bytes kept = resources.keep(std::move(*bytes));
-        resources.hash.add(kept);
-        const std::string_view text(reinterpret_cast<const char*>(kept.data()), kept.size());
-        if (const auto root = parse_strict(text, report)) {
-            read_root(*root, "", resources, media, report);
-        }
-    });
+Result<MediaFile> read_media(const std::filesystem::path& path,
+                             std::span<const std::filesystem::path> allowed_folders) {
+    return guarded(
+        path, allowed_folders, [&](Resources& resources, MediaFile& media, Report& report) {
+            auto bytes = gltf::read_whole_file(path, "", report);
+            if (!bytes) {
+                return;
+            }
+            resources.inputs.push_back(path);
+            const gltf::Bytes kept = resources.keep(std::move(*bytes));
+            resources.hash.add(kept);
+            const std::string_view text(reinterpret_cast<const char*>(kept.data()), kept.size());
+            if (const auto root = parse_strict(text, report)) {
+                read_root(*root, "", resources, media, report);
+            }
+        });
 }
 
 Result<MediaFile> parse_media(std::string_view json, const std::filesystem::path& file,
-                              const std::string& where) {
-    return guarded(file, [&](Resources& resources, MediaFile& media, Report& report) {
-        if (const auto root = parse_strict(json, report)) {
-            read_root(*root, where, resources, media, report);
-        }
-    });
+                              const std::string& where,
+                              std::span<const std::filesystem::path> allowed_folders) {
+    return guarded(file, allowed_folders,
+                   [&](Resources& resources, MediaFile& media, Report& report) {
+                       if (const auto root = parse_strict(json, report)) {
+                           read_root(*root, where, resources, media, report);
+                       }
+                   });
 }
 
 }  // namespace opaline::formats

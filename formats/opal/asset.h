@@ -76,6 +76,9 @@ struct PrimitiveRecord {
     /// Translucent, not separate: its rows hold single scattering alone.
     static constexpr std::uint32_t kSingleOnly = 4;
 
+    /// Whether pictures show it from behind: as glTF says of double-sided surfaces, and bodies of
+    /// a medium.
+    bool shows_back() const { return shading != Shading::diffuse || (flags & kDoubleSided) != 0; }
     bool is_opaque() const { return shading != Shading::translucent; }
     bool is_separate() const { return (flags & kSeparate) != 0; }
     bool is_single_only() const { return (flags & kSingleOnly) != 0; }

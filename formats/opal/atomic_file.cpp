@@ -20,8 +20,9 @@ Error io_error(const std::filesystem::path& path, const std::string& what, int c
     const char* remedy =
         code == ENOSPC || code == EDQUOT ? "free some space, or write to another disk"
         : code == EACCES || code == EPERM || code == EROFS ? "choose a folder you may write to"
-        : code == ENOENT                                   ? "create the folder first"
-                                                           : "check the output path";
+        : code == EFBIG  ? "raise the limit of file sizes (ulimit -f)"
+        : code == ENOENT ? "create the folder first"
+                         : "check the output path";
     return make_error(ErrorKind::resource, path.string(), "", what + ": " + std::strerror(code),
                       remedy);
 }

@@ -67,7 +67,7 @@ std::string find_own_fault(const AssetView& asset, std::size_t i) {
     if (own.image != kNoImage && (own.image >= asset.images.size() || asset.texcoord.empty())) {
         return "it uses an image or texture coordinates that are not there";
     }
-    if (static_cast<std::uint32_t>(own.wrap_u) > 2 || static_cast<std::uint32_t>(own.wrap_v) > 2) {
+    if (!is_known(own.wrap_u) || !is_known(own.wrap_v)) {
         return "unknown texture wrap mode";
     }
     return {};

@@ -12,6 +12,12 @@ bool is_alpha(float x) {
     return x >= 0 && x <= 1;
 }
 
+bool is_clear_share(const HoleRecord& hole) {
+    const ClearShare clear = clear_share_of(hole);
+    return is_alpha(clear.share) &&
+           (clear.eta == 0 || (clear.eta >= 1 && std::isfinite(clear.eta)));
+}
+
 std::string find_hole_fault(const AssetView& asset, std::size_t i) {
     const HoleRecord& hole = asset.holes.record[i];
     if (hole.primitive >= asset.primitives.size() ||
@@ -25,15 +31,14 @@ std::string find_hole_fault(const AssetView& asset, std::size_t i) {
         return "it is neither a mask nor a blend";
     }
     if (!is_alpha(hole.alpha) || !(hole.cutoff >= 0) || !std::isfinite(hole.cutoff) ||
-        hole.reserved != 0) {
-        return "its alpha is not in 0 ... 1, its cutoff is below zero or not finite, or it has a "
-               "value that only later versions know";
+        !is_clear_share(hole)) {
+        return "its alpha is not in 0 ... 1, its cutoff is below zero or not finite, or what "
+               "passes it as glass is not in 0 ... 1 or of an index below 1";
     }
     if (hole.image != kNoImage && (hole.image >= asset.images.size() || asset.texcoord.empty())) {
         return "it uses an image or texture coordinates that are not there";
     }
-    if (static_cast<std::uint32_t>(hole.wrap_u) > 2 ||
-        static_cast<std::uint32_t>(hole.wrap_v) > 2) {
+    if (!is_known(hole.wrap_u) || !is_known(hole.wrap_v)) {
         return "unknown texture wrap mode";
     }
     return {};

@@ -32,8 +32,7 @@ const char* find_map_fault(const AssetView& asset) {
         if (map.image >= asset.images.size() || asset.texcoord.empty()) {
             return "it uses an image or texture coordinates that are not there";
         }
-        if (static_cast<std::uint32_t>(map.wrap_u) > 2 ||
-            static_cast<std::uint32_t>(map.wrap_v) > 2 ||
+        if (!is_known(map.wrap_u) || !is_known(map.wrap_v) ||
             !(std::abs(map.scale) <= kMostNormalScale) ||
             !are_shares_sound(map, asset.primitives[map.primitive].shading == Shading::sheet)) {
             return "a texture wrap mode, a scale or a value is not one of this version";

@@ -91,7 +91,7 @@ Fault find_primitive_fault(const AssetView& asset, std::size_t i) {
         (p.base_color_image >= asset.images.size() || asset.texcoord.empty())) {
         return {primitive_name(i), "it uses an image or texture coordinates that are not there"};
     }
-    if (static_cast<std::uint32_t>(p.wrap_u) > 2 || static_cast<std::uint32_t>(p.wrap_v) > 2) {
+    if (!is_known(p.wrap_u) || !is_known(p.wrap_v)) {
         return {primitive_name(i), "unknown texture wrap mode"};
     }
     return {};
@@ -136,7 +136,7 @@ std::string find_gloss_record_fault(const AssetView& asset, std::size_t i) {
     if (g.image != kNoImage && (g.image >= asset.images.size() || asset.texcoord.empty())) {
         return "it uses an image or texture coordinates that are not there";
     }
-    if (static_cast<std::uint32_t>(g.wrap_u) > 2 || static_cast<std::uint32_t>(g.wrap_v) > 2) {
+    if (!is_known(g.wrap_u) || !is_known(g.wrap_v)) {
         return "unknown texture wrap mode";
     }
     return {};

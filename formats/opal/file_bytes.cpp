@@ -16,8 +16,9 @@ constexpr std::align_val_t kAlignment{64};
 
 // Closed with its scope.
 struct Descriptor {
+    // Without O_NONBLOCK a pipe would wait for a writer.
     explicit Descriptor(const std::filesystem::path& path)
-        : number(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+        : number(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {}
     Descriptor(const Descriptor&) = delete;
     Descriptor& operator=(const Descriptor&) = delete;
     ~Descriptor() {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "formats/opal/half.h"
 #include "formats/opal/preview_image.h"
 
 namespace opaline::formats {
@@ -25,9 +26,29 @@ struct HoleRecord {
     float alpha = 1;     ///< in [0, 1]
     float cutoff = 0.5;  ///< of a mask: finite, >= 0
     HoleMode mode = HoleMode::mask;
-    std::uint32_t reserved = 0;
+    std::uint32_t clear = 0;  ///< of glass (ClearShare), else 0: earlier readers know no other
 };
 static_assert(sizeof(HoleRecord) == 32);
+
+/// Thin glass: of the light that meets the surface, `share` times thin_glass_transmittance passes.
+struct ClearShare {
+    float share = 0;  ///< in [0, 1]
+    float eta = 0;    ///< >= 1; or 0: infinite
+};
+
+/// Of `HOLE`, where a record has one.
+inline constexpr std::uint32_t kClearHolesVersion = 2;
+
+/// As halves. Precondition: eta is at most kLargestHalf.
+inline void store_clear_share(const ClearShare& clear, HoleRecord& hole) {
+    hole.clear = std::uint32_t{half_from_float(clear.share)} |
+                 std::uint32_t{half_from_float(clear.eta)} << 16;
+}
+
+inline ClearShare clear_share_of(const HoleRecord& hole) {
+    return {float_from_half(static_cast<std::uint16_t>(hole.clear)),
+            float_from_half(static_cast<std::uint16_t>(hole.clear >> 16))};
+}
 
 /// All holes of an asset as spans, into the bytes of a file or into `Holes`. Immutable.
 struct HolesView {

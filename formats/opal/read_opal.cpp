@@ -175,7 +175,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
                 read = read_gloss;
                 break;
             case kHoleSection:
-                read = read_holes;
+                read = read_holes, latest = kClearHolesVersion;
                 break;
             case kNormSection:
                 read = read_normal_maps, latest = kMappedSheetVersion;

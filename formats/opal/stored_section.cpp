@@ -5,30 +5,40 @@
 
 #include <cassert>
 #include <memory>
+#include <utility>
 
 #include "formats/opal/layout.h"
 
 namespace opaline::formats {
 namespace {
 
-constexpr int kZstdLevel = 6;
 constexpr std::byte kZeros[kSectionAlignment] = {};
 
-// Makes of `stored` one part, if that is smaller.
-void compress(StoredSection& stored) {
-    std::vector<std::byte> plain;
-    plain.reserve(stored.entry.size);
-    for (const auto part : stored.parts) {
-        plain.insert(plain.end(), part.begin(), part.end());
+// Makes of `stored` one part, if that is smaller. Part by part, as a copy of the whole section
+// would double the memory of large ones.
+void compress(StoredSection& stored, int level) {
+    const std::unique_ptr<ZSTD_CCtx, std::size_t (*)(ZSTD_CCtx*)> context(ZSTD_createCCtx(),
+                                                                          ZSTD_freeCCtx);
+    if (!context) return;
+    ZSTD_CCtx_setParameter(context.get(), ZSTD_c_compressionLevel, level);
+    ZSTD_CCtx_setPledgedSrcSize(context.get(), stored.entry.size);
+    std::vector<std::byte> out;
+    const std::size_t step = ZSTD_CStreamOutSize();
+    for (std::size_t i = 0; i < stored.parts.size(); ++i) {
+        const bool is_last = i + 1 == stored.parts.size();
+        ZSTD_inBuffer in{stored.parts[i].data(), stored.parts[i].size(), 0};
+        std::size_t unwritten = is_last ? 1 : 0;  // of the frame, which ends with the last part
+        while (in.pos < in.size || (is_last && unwritten != 0)) {
+            const std::size_t before = out.size();
+            out.resize(before + step);
+            ZSTD_outBuffer room{out.data() + before, step, 0};
+            unwritten = ZSTD_compressStream2(context.get(), &room, &in,
+                                             is_last ? ZSTD_e_end : ZSTD_e_continue);
+            out.resize(before + room.pos);
+            if (ZSTD_isError(unwritten) != 0U || out.size() >= stored.entry.size) return;
+        }
     }
-    std::vector<std::byte> out(ZSTD_compressBound(plain.size()));
-    const std::size_t size =
-        ZSTD_compress(out.data(), out.size(), plain.data(), plain.size(), kZstdLevel);
-    if (ZSTD_isError(size) != 0U || size >= plain.size() ||
-        plain.size() / size >= kMaxCompressionRatio) {
-        return;
-    }
-    out.resize(size);
+    if (stored.entry.size / out.size() >= kMaxCompressionRatio) return;
     stored.compressed = std::move(out);
     stored.entry.codec = static_cast<std::uint32_t>(Codec::zstd);
     stored.parts = {stored.compressed};
@@ -56,7 +66,7 @@ std::span<const std::byte> padding_zeros(std::size_t count) {
     return {kZeros, count};
 }
 
-StoredSection store_arrays(std::uint32_t id, Codec codec,
+StoredSection store_arrays(std::uint32_t id, int zstd_level,
                            std::span<const std::span<const std::byte>> arrays) {
     StoredSection stored;
     stored.entry.id = id;
@@ -66,7 +76,7 @@ StoredSection store_arrays(std::uint32_t id, Codec codec,
         stored.parts.push_back(padding_zeros(padding));
         stored.entry.size += array.size() + padding;
     }
-    if (codec == Codec::zstd) compress(stored);
+    if (zstd_level != kNotCompressed) compress(stored, zstd_level);
     sum_up(stored);
     return stored;
 }

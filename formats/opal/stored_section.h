@@ -21,9 +21,12 @@ struct StoredSection {
     StoredSection& operator=(StoredSection&&) = default;
 };
 
-/// A section of arrays, each padded to kArrayAlignment so that a reader can use them in place. With
-/// Codec::zstd it is compressed if that makes it smaller.
-StoredSection store_arrays(std::uint32_t id, Codec codec,
+/// Stored as it is, instead of by zstd at a level of 1 ... 19.
+inline constexpr int kNotCompressed = 0;
+
+/// A section of arrays, each padded to kArrayAlignment so that a reader can use them in place. It
+/// is compressed if a level is given and that makes it smaller.
+StoredSection store_arrays(std::uint32_t id, int zstd_level,
                            std::span<const std::span<const std::byte>> arrays);
 
 /// A section of text, its exact length.

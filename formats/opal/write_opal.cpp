@@ -82,6 +82,21 @@ SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_
     return heads;
 }
 
+// Of meshes and what else every reader decodes.
+constexpr int kSmallLevel = 6;
+
+int level_of(Compression compression) {
+    switch (compression) {
+        case Compression::none:
+            break;
+        case Compression::fast:
+            return 3;
+        case Compression::best:
+            return 19;
+    }
+    return kNotCompressed;
+}
+
 using Arrays = std::vector<std::span<const std::byte>>;
 
 StoredSection store_mesh(const AssetView& asset, const MeshHead& head) {
@@ -91,7 +106,7 @@ StoredSection store_mesh(const AssetView& asset, const MeshHead& head) {
                         std::as_bytes(asset.base_color),
                         std::as_bytes(asset.texcoord),
                         std::as_bytes(asset.index)};
-    return store_arrays(kMeshSection, Codec::zstd, arrays);
+    return store_arrays(kMeshSection, kSmallLevel, arrays);
 }
 
 // Images compress well or are small.
@@ -100,45 +115,49 @@ StoredSection store_images(const AssetView& asset, const SectionHeads& heads) {
     for (const PreviewImage& image : asset.images) {
         arrays.push_back(std::as_bytes(image.rgb));
     }
-    return store_arrays(kImagSection, Codec::zstd, arrays);
+    return store_arrays(kImagSection, kSmallLevel, arrays);
 }
 
 // In the order of the file.
 std::vector<StoredSection> store_sections(const AssetView& asset,
                                           std::span<const float> receiver_errors,
-                                          const SectionHeads& heads) {
+                                          Compression compression, const SectionHeads& heads) {
+    const int level = level_of(compression);
     std::vector<StoredSection> sections;
-    const auto add = [&](std::uint32_t id, Codec codec, const auto& arrays) {
-        sections.push_back(store_arrays(id, codec, arrays));
+    const auto add = [&](std::uint32_t id, int zstd_level, const auto& arrays) {
+        sections.push_back(store_arrays(id, zstd_level, arrays));
     };
     if (!asset.provenance.empty()) {
         sections.push_back(store_text(kProvSection, asset.provenance));
     }
-    add(kBasiSection, Codec::none, Arrays{bytes_of(heads.basis)});
-    add(kPrimSection, Codec::none,
+    add(kBasiSection, kNotCompressed, Arrays{bytes_of(heads.basis)});
+    add(kPrimSection, kNotCompressed,
         Arrays{bytes_of(heads.primitives), std::as_bytes(asset.primitives)});
     sections.back().entry.version = version_of(asset.primitives);
-    add(kTranSection, Codec::none, row_arrays(heads.transport, asset.transport));
+    add(kTranSection, level, row_arrays(heads.transport, asset.transport));
     sections.back().entry.version = kTransportVersion;
     sections.push_back(store_mesh(asset, heads.mesh));
     if (!asset.images.empty()) {
         sections.push_back(store_images(asset, heads));
     }
     if (!asset.roughness.empty()) {
-        add(kSpecSection, Codec::zstd,
+        add(kSpecSection, kSmallLevel,
             Arrays{bytes_of(heads.specular), std::as_bytes(asset.roughness),
                    std::as_bytes(asset.openness)});
     }
     if (!asset.gloss.empty()) {
-        add(kGlosSection, Codec::zstd, Arrays{bytes_of(heads.gloss), std::as_bytes(asset.gloss)});
+        add(kGlosSection, kSmallLevel, Arrays{bytes_of(heads.gloss), std::as_bytes(asset.gloss)});
     }
     if (!asset.holes.empty()) {
-        add(kHoleSection, Codec::zstd,
+        add(kHoleSection, kSmallLevel,
             Arrays{bytes_of(heads.holes), std::as_bytes(asset.holes.record),
                    std::as_bytes(asset.holes.vertex_alpha)});
+        const bool has_glass = std::ranges::any_of(
+            asset.holes.record, [](const HoleRecord& h) { return h.clear != 0; });
+        sections.back().entry.version = has_glass ? kClearHolesVersion : 1;
     }
     if (!asset.normal_maps.empty()) {
-        add(kNormSection, Codec::zstd,
+        add(kNormSection, kSmallLevel,
             Arrays{bytes_of(heads.normal_maps), std::as_bytes(asset.normal_maps.record),
                    std::as_bytes(asset.normal_maps.tangent)});
         const bool has_sheets =
@@ -148,21 +167,20 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
     }
     if (!asset.volumes.empty()) {
         assert(asset.volumes.rows.cubemap_size == asset.cubemap_size);
-        add(kVoluSection, Codec::none,
-            volume_arrays(heads.volumes, asset.volumes, heads.volume_rows));
+        add(kVoluSection, level, volume_arrays(heads.volumes, asset.volumes, heads.volume_rows));
     }
     if (!asset.clouds.empty()) {
-        add(kClouSection, Codec::none, cloud_arrays(heads.clouds, asset.clouds));
+        add(kClouSection, level, cloud_arrays(heads.clouds, asset.clouds));
     }
     if (!asset.emitters.empty()) {
-        add(kEmitSection, Codec::none, emitter_arrays(heads.emitters, asset.emitters));
+        add(kEmitSection, level, emitter_arrays(heads.emitters, asset.emitters));
     }
     if (!asset.volumes.glow.empty()) {
-        add(kGlowSection, Codec::none, glow_arrays(heads.glow, asset.volumes.glow));
+        add(kGlowSection, level, glow_arrays(heads.glow, asset.volumes.glow));
     }
     if (!receiver_errors.empty()) {
         assert(receiver_errors.size() == asset.receivers());
-        add(kRerrSection, Codec::zstd,
+        add(kRerrSection, kSmallLevel,
             Arrays{bytes_of(heads.receiver_errors), std::as_bytes(receiver_errors)});
     }
     return sections;
@@ -182,9 +200,11 @@ Status write_padded(Write& write, std::uint64_t& position, std::uint64_t target)
 
 // Hands the file to `write`, a Status(std::span<const std::byte>), from beginning to end.
 template <class Write>
-Status write_parts(const AssetView& asset, std::span<const float> receiver_errors, Write write) {
+Status write_parts(const AssetView& asset, std::span<const float> receiver_errors,
+                   Compression compression, Write write) {
     const SectionHeads heads = make_heads(asset, receiver_errors);
-    std::vector<StoredSection> sections = store_sections(asset, receiver_errors, heads);
+    std::vector<StoredSection> sections =
+        store_sections(asset, receiver_errors, compression, heads);
     std::vector<SectionEntry> table;
     std::uint64_t end = sizeof(FileHeader) + sections.size() * sizeof(SectionEntry);
     for (StoredSection& section : sections) {
@@ -222,8 +242,8 @@ Status write_parts(const AssetView& asset, std::span<const float> receiver_error
 }  // namespace
 
 Status write_opal_bytes(const AssetView& asset, AtomicFile& file,
-                        std::span<const float> receiver_errors) {
-    return write_parts(asset, receiver_errors,
+                        std::span<const float> receiver_errors, Compression compression) {
+    return write_parts(asset, receiver_errors, compression,
                        [&](std::span<const std::byte> bytes) { return file.write(bytes); });
 }
 
@@ -232,12 +252,13 @@ Status write_opal(const AssetView& asset, AtomicFile file) {
     return status ? file.commit() : status;
 }
 
-std::uint64_t opal_size(const AssetView& asset) {
+std::uint64_t opal_size(const AssetView& asset, Compression compression) {
     std::uint64_t size = 0;
-    const Status counted = write_parts(asset, {}, [&](std::span<const std::byte> bytes) {
-        size += bytes.size();
-        return ok_status();
-    });
+    const Status counted =
+        write_parts(asset, {}, compression, [&](std::span<const std::byte> bytes) {
+            size += bytes.size();
+            return ok_status();
+        });
     return counted ? size : 0;
 }
 

@@ -106,8 +106,6 @@ void answer_vdb_request(int argc, const char* const* argv) {
     }
     if (fault) {
         reply.write_fault(*fault);
-    } else {
-        reply.write_end();
     }
     // Without destructors: they would free what the kernel frees at once.
     ::_exit(0);

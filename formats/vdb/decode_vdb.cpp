@@ -3,6 +3,7 @@
 #include <openvdb/openvdb.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <exception>
 #include <glm/glm.hpp>
 #include <ios>
@@ -99,14 +100,26 @@ std::optional<Fault> check_kind(const ListedGrid& listed) {
     return {};
 }
 
+// What may be the density of a file of which nothing is said: the grid of floats with that name,
+// else all of them; the only grid, whatever its values.
+std::vector<const ListedGrid*> list_densities(const std::vector<ListedGrid>& grids) {
+    std::vector<const ListedGrid*> found;
+    for (const ListedGrid& listed : grids) {
+        if (check_kind(listed) || !listed.grid->isType<openvdb::FloatGrid>()) continue;
+        if (listed.name == "density") return {&listed};
+        found.push_back(&listed);
+    }
+    const bool is_alone = found.empty() && grids.size() == 1 && !check_kind(grids.front());
+    if (is_alone) found.push_back(&grids.front());
+    return found;
+}
+
 // The grids to read, or what stands in the way of it.
 std::optional<Fault> select_grids(const std::vector<ListedGrid>& grids,
                                   std::span<const std::string> names,
                                   std::vector<const ListedGrid*>& selected) {
-    for (const ListedGrid& listed : grids) {
-        if (names.empty() && !check_kind(listed)) {
-            selected.push_back(&listed);
-        }
+    if (names.empty()) {
+        selected = list_densities(grids);
     }
     for (const std::string& name : names) {
         const ListedGrid* found = nullptr;
@@ -130,7 +143,7 @@ std::optional<Fault> select_grids(const std::vector<ListedGrid>& grids,
         return check_kind(grids.front());
     }
     if (selected.empty()) {
-        return Fault{"", "has no fog volume; it has " + list_grids(grids),
+        return Fault{"", "has no fog volume of floats; it has " + list_grids(grids),
                      "write a fog volume of floats"};
     }
     if (selected.size() > kMaxGrids) {
@@ -179,12 +192,26 @@ std::optional<Fault> decode_vdb(const std::string& path, std::span<const std::st
             return fault;
         }
         BrickBudget budget{kMaxBricks, kMaxTableBricks};
-        for (std::size_t i = 0; i < selected.size(); ++i) {
-            const std::string& name = names.empty() ? selected[i]->name : names[i];
-            if (std::optional<Fault> fault = pack_grid(name, *selected[i], file, budget, reply)) {
-                return fault;
+        std::vector<std::string> unread;
+        std::optional<Fault> first_fault;
+        bool is_any_read = false;
+        for (const ListedGrid& listed : file.grids()) {
+            if (std::find(selected.begin(), selected.end(), &listed) == selected.end()) {
+                unread.push_back(listed.name);
             }
         }
+        for (std::size_t i = 0; i < selected.size(); ++i) {
+            const std::string& name = names.empty() ? selected[i]->name : names[i];
+            std::optional<Fault> fault = pack_grid(name, *selected[i], file, budget, reply);
+            if (fault && (!names.empty() || !fault->is_of_values)) return fault;
+            is_any_read = is_any_read || !fault;
+            if (fault) {  // velocities and shadows are no densities
+                unread.push_back(name);
+                if (!first_fault) first_fault = std::move(fault);
+            }
+        }
+        if (!is_any_read) return first_fault;
+        reply.write_end(unread);
         return {};
     } catch (const std::bad_alloc&) {
         throw;

@@ -2,6 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
+#include <ios>
 #include <stdexcept>
 
 #include "formats/vdb/limits.h"
@@ -31,6 +32,10 @@ GridFile::GridFile(const std::string& path) : buffer_(1u << 20) {
     for (std::int32_t i = 0; i < count; ++i) {
         read_listed(grids_.emplace_back());
     }
+    // Not all grids may be read: that the last one is there shows that the file is whole.
+    const auto end = stream_.tellg();
+    stream_.seekg(0, std::ios::end);
+    if (stream_.tellg() < end) throw std::ios_base::failure("end of file");
 }
 
 void GridFile::read_header() {

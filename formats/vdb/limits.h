@@ -19,7 +19,9 @@ inline constexpr std::int32_t kMaxGridsInFile = 4096;  ///< listed in a file
 inline constexpr std::size_t kMaxNameBytes = 255;      ///< name of a grid
 inline constexpr std::size_t kMaxTextBytes = 4096;     ///< a text on its way between processes
 inline constexpr std::size_t kMaxTextShown = 200;      ///< bytes of a message about a file
-/// Voxels that are NaN or negative, per active voxel, up to which they are set to 0.
+/// Negative values down to this share of a grid's largest value are taken for 0.
+inline constexpr float kRoundedToZero = 1e-3f;
+/// Voxels that are NaN or more negative, per active voxel, up to which they are set to 0.
 inline constexpr double kMaxRepairedShare = 1e-3;
 
 }  // namespace opaline::formats::vdb

@@ -18,14 +18,16 @@ constexpr std::size_t kBrickVoxels = 512;
 /// How many active voxels there are, and how many of them have a value that none should have.
 struct Census {
     std::uint64_t active = 0, not_a_number = 0, negative = 0, infinite = 0;
+    float least = 0;  ///< negative values down to this one are rounding, and are not counted
 
     void add(float value, std::uint64_t voxels) {
         not_a_number += std::isnan(value) ? voxels : 0;
-        negative += value < 0 ? voxels : 0;
+        negative += value < least ? voxels : 0;
         infinite += std::isinf(value) ? voxels : 0;
     }
     void add(const openvdb::Vec3s& value, std::uint64_t voxels) {
         Census own;
+        own.least = least;
         for (int i = 0; i < 3; ++i) {
             own.add(value[i], 1);
         }
@@ -37,6 +39,13 @@ struct Census {
         }
     }
 };
+
+float largest_of(float value) {
+    return value;
+}
+float largest_of(const openvdb::Vec3s& value) {
+    return std::max({largest_of(value[0]), largest_of(value[1]), largest_of(value[2])});
+}
 
 float repaired(float value) {
     return value > 0 ? value : 0;  // NaN is not
@@ -75,12 +84,18 @@ class Packer {
                              BrickBudget& budget, ReplyWriter& reply) {
         if (tree.background() != openvdb::zeroVal<Value>()) {
             return Fault{"", "its background is not 0: it fills all of space",
-                         "write it as a fog volume with background 0"};
+                         "write it as a fog volume with background 0", true};
         }
         brick_limit_ = budget.bricks;
+        float largest = 0;
+        for (auto value = tree.cbeginValueOn(); value; ++value) {
+            largest = std::max(largest, largest_of(repaired(*value)));
+        }
+        census_.least = -kRoundedToZero * largest;
         list_leaves(tree);
         list_tiles(tree);
         std::optional<Fault> fault = check_values();
+        if (fault) fault->is_of_values = true;
         if (!fault) fault = check_places();
         if (!fault) fault = place_table(head, budget);
         if (fault) {

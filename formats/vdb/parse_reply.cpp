@@ -39,6 +39,18 @@ std::optional<Fault> read_fault(const ByteSource& source) {
     return Fault{*text[0], *text[1], *text[2]};
 }
 
+std::optional<std::vector<std::string>> read_names(const ByteSource& source) {
+    std::uint32_t count = 0;
+    if (!read_value(source, count) || count > kMaxGrids) return {};
+    std::vector<std::string> names;
+    while (names.size() < count) {
+        std::optional<std::string> name = read_text(source, kMaxTextBytes);
+        if (!name) return {};
+        names.push_back(std::move(*name));
+    }
+    return names;
+}
+
 // Whether the table is not larger than what is left, and lies where index coordinates are exact.
 bool is_allowed(const GridHead& head, Budget& budget) {
     std::uint64_t places = 1;
@@ -133,7 +145,9 @@ std::optional<Reply> parse_reply(const ByteSource& source) {
             return reply;
         }
         if (tag == static_cast<std::uint32_t>(ReplyTag::end)) {
-            if (reply.grids.empty()) return {};
+            auto unread = read_names(source);
+            if (reply.grids.empty() || !unread) return {};
+            reply.unread = std::move(*unread);
             return reply;
         }
         if (tag != static_cast<std::uint32_t>(ReplyTag::grid) || reply.grids.size() == kMaxGrids) {

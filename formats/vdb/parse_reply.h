@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "formats/vdb/read_vdb.h"
@@ -16,7 +17,8 @@ using ByteSource = std::function<bool(std::span<std::byte> out)>;
 
 struct Reply {
     std::vector<VdbGrid> grids;
-    std::optional<Fault> fault;  ///< then there are no grids
+    std::vector<std::string> unread;  ///< names of grids of the file
+    std::optional<Fault> fault;       ///< then there are no grids
 };
 
 /// Reads a reply (reply_format.h) as if an attacker had written it: memory grows with the bytes

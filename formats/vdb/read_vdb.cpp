@@ -145,7 +145,8 @@ bool fit_names(std::span<const VdbGrid> grids, std::span<const std::string> name
 
 Result<std::vector<VdbGrid>> read_vdb(const std::filesystem::path& file,
                                       std::span<const std::string> names,
-                                      const VdbReadOptions& options) {
+                                      const VdbReadOptions& options,
+                                      std::vector<std::string>* unread) {
     if (Status status = check_names(file, names); !status) {
         return std::move(status).error();
     }
@@ -170,6 +171,12 @@ Result<std::vector<VdbGrid>> read_vdb(const std::filesystem::path& file,
     }
     if (!fit_names(reply->grids, names)) {
         return reader_error(file, Ending::failed, options);
+    }
+    if (unread != nullptr) {
+        *unread = std::move(reply->unread);
+        for (std::string& name : *unread) {
+            name = shown(std::move(name));
+        }
     }
     return std::move(reply->grids);
 }

@@ -23,8 +23,9 @@ struct VdbGrid {
     SparseGrid<float> scalar;     ///< of a grid of floats, stored as such or as halves
     SparseGrid<glm::vec3> color;  ///< of a grid of three floats (Vec3f)
     std::uint64_t active_voxels = 0;
-    /// Active voxels that were changed: each component that is NaN or negative became 0. A voxel
-    /// with both counts as NaN.
+    /// Active voxels with a component that is NaN, or negative by more than a thousandth of the
+    /// grid's largest value; a voxel with both counts as NaN. These components became 0, and
+    /// smaller negative ones too, which are not counted.
     std::uint64_t not_a_number = 0, negative = 0;
 };
 
@@ -40,21 +41,24 @@ struct VdbReadOptions {
     const std::atomic<bool>* interrupted = nullptr;
 };
 
-/// Reads fog volumes of an OpenVDB file: those with these names, in this order, or every grid that
-/// is one if `names` is empty, in the file's order. A name that stands several times in a file can
-/// be given as "name[0]", "name[1]". Active tiles are filled in.
+/// Reads fog volumes of an OpenVDB file: those with these names, in this order. If `names` is
+/// empty: the grid of floats that is called density, else every grid of floats that can be read as
+/// a density, in the file's order, or the only grid there is. A name that stands several times in a
+/// file can be given as "name[0]", "name[1]". Active tiles are filled in. `unread` (may be null)
+/// receives the names of grids that are not in the result, 64 at most.
 ///
 /// Untrusted files are safe to try: a process of its own reads them, so what crashes OpenVDB or
 /// makes it run out of bounds does not reach this one (README.md says what that does not cover).
 ///
 /// Errors, `bad_input`: not an OpenVDB file, damaged, or past a limit (limits.h, `options`); no
 /// such grid; a named grid that is of other values than float and Vec3f, a level set or a staggered
-/// field, or whose transform is a frustum or cannot be inverted; no grid left if `names` is empty;
-/// a grid that is read and has a background other than 0, no active voxel, no value > 0, an
-/// infinite value, more than 0.1 % of active voxels NaN or negative, or a voxel whose index
-/// coordinates are beyond 2^24. `resource`: the process cannot be started. `interrupted`.
+/// field, or whose transform is a frustum or cannot be inverted; a grid with a background other
+/// than 0, no active voxel, no value > 0, an infinite value, more than 0.1 % of active voxels NaN
+/// or negative (as VdbGrid counts them), or a voxel whose index coordinates are beyond 2^24; no
+/// other grid left if `names` is empty. `resource`: the process cannot be started. `interrupted`.
 Result<std::vector<VdbGrid>> read_vdb(const std::filesystem::path& file,
                                       std::span<const std::string> names = {},
-                                      const VdbReadOptions& options = {});
+                                      const VdbReadOptions& options = {},
+                                      std::vector<std::string>* unread = nullptr);
 
 }  // namespace opaline::formats

@@ -11,6 +11,7 @@
 ///     grid:   u32 tag, text name, GridHead, then its bricks in ascending order of place, each
 ///             u32 place (index into the table) and 512 values of 1 or 3 floats
 ///     fault:  u32 tag, three texts
+///     end:    u32 tag, u32 number of names (at most kMaxGrids), the names of grids not read
 ///     text:   u32 number of bytes, bytes
 namespace opaline::formats::vdb {
 
@@ -30,6 +31,7 @@ static_assert(std::is_trivially_copyable_v<GridHead> && sizeof(GridHead) == 184)
 /// Why a file cannot be used; the parts of a Diagnostic.
 struct Fault {
     std::string where, fault, remedy;
+    bool is_of_values = false;  ///< a grid that is read, but is no density; not sent
 };
 
 }  // namespace opaline::formats::vdb

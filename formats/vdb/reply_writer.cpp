@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 
 #include "formats/vdb/limits.h"
@@ -31,8 +32,13 @@ void ReplyWriter::write_fault(const Fault& fault) {
     flush();
 }
 
-void ReplyWriter::write_end() {
+void ReplyWriter::write_end(std::span<const std::string> unread) {
+    unread = unread.first(std::min(unread.size(), kMaxGrids));
     append_number(static_cast<std::uint32_t>(ReplyTag::end));
+    append_number(static_cast<std::uint32_t>(unread.size()));
+    for (const std::string& name : unread) {
+        append_text(name);
+    }
     flush();
 }
 

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,7 +23,7 @@ class ReplyWriter {
     void write_brick(std::uint32_t place, std::span<const float> values);
     /// The last record of a reply, either of them: sends everything.
     void write_fault(const Fault& fault);
-    void write_end();
+    void write_end(std::span<const std::string> unread = {});
 
   private:
     void append(std::span<const std::byte> bytes);

@@ -28,7 +28,7 @@ struct Axis {
     double halved_cell() const { return cell * ratio(); }
 };
 
-// Adds what coarse cells first, first + 1, ... cover of the fine cell `fine`, as shares of it.
+// Adds the shares of the fine cell `fine` that the coarse cells first, first + 1, ... cover.
 void add_covers(std::int32_t fine, double ratio, double weight, GatherPlan::Mix& mix) {
     const double begin = fine / ratio, end = (fine + 1) / ratio;
     for (std::uint32_t c = 0; c < mix.weight.size(); ++c) {

@@ -16,7 +16,7 @@
 
 namespace opaline::runtime {
 
-/// A sun and what depends on its height alone.
+/// A sun and the values that depend on its height alone.
 struct LitSun {
     formats::Vec3 direction;           ///< unit, toward the sun, world
     formats::Rgb irradiance;           ///< E, on a plane facing it [W/m^2]

@@ -20,7 +20,7 @@ struct LayerRay {
     double z(double t) const { return double(origin.z) + t * double(direction.z); }
 };
 
-/// What a ray crosses of a layer, means weighted by what is seen of it.
+/// A ray through a layer: means weighted by visibility from the origin.
 struct LayerMarch {
     float length = 0;     ///< inside of the layer [m]; 0: nothing is seen, and no mean is set
     double distance = 0;  ///< from the origin [m]

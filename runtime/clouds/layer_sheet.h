@@ -6,12 +6,12 @@
 
 namespace opaline::runtime {
 
-/// A layer along one ray, taken as a thin sheet where it is seen on average: what is nearer stands
-/// before all of it, what is farther behind all of it. Exact for what does not overlap the layer in
-/// depth; continuous for what moves through it.
+/// A layer along one ray as a thin sheet at its mean visible distance: nearer objects are in front
+/// of all of it, farther ones behind all of it. Exact for objects that do not overlap the layer in
+/// depth; continuous for objects that move through it.
 struct LayerSheet {
     formats::Rgb radiance;                ///< its own light, without glow [W m^-2 sr^-1]
-    formats::Rgb transmittance{1, 1, 1};  ///< exp(-tau_S), of what is behind
+    formats::Rgb transmittance{1, 1, 1};  ///< exp(-tau_S), of light from behind
     float distance = 0;                   ///< from the eye [m]; 0 where the ray meets no layer
 
     bool is_met() const { return transmittance.g < 1; }

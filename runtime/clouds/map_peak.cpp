@@ -133,7 +133,7 @@ std::optional<MapPeak> find_peak(const Environment& map) {
                 most = irradiance;
             }
         } else if (brightest.luminance <= 2 * kStandOut * around.map) {
-            break;  // what is darker stands out less
+            break;  // darker pixels exceed their surroundings by less
         }
         tried.push_back(brightest.direction);
     }

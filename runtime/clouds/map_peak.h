@@ -9,8 +9,8 @@
 
 namespace opaline::runtime {
 
-/// A small light in a map, in the map's frame. Within `kPeakReach` of its brightest pixel, what the
-/// luminance exceeds the threshold by is the light's, in the pixel's colour.
+/// A small light in a map, in the map's frame. Within `kPeakReach` of its brightest pixel,
+/// luminance above the threshold belongs to the light, in the pixel's colour.
 struct MapPeak {
     formats::Vec3 brightest;  ///< unit
     double threshold = 0;     ///< luminance, >= 0
@@ -28,7 +28,7 @@ inline constexpr double kPeakReach = 5 * std::numbers::pi / 180;  ///< [rad]
 /// rarely counts. Up to eight places are compared, more than 12 degrees apart, brightest first.
 std::optional<MapPeak> find_peak(const formats::Environment& map);
 
-/// The light's share of a pixel's radiance: what its luminance exceeds the threshold by.
+/// The light's share of a pixel's radiance: luminance above the threshold over luminance.
 formats::Rgb above_threshold(formats::Rgb radiance, float threshold);
 
 }  // namespace opaline::runtime

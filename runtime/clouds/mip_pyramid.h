@@ -68,7 +68,7 @@ struct MipPlace {
 
 inline MipPlace mip_place(double u, std::uint32_t count, MipBorder border) {
     const int last = static_cast<int>(count) - 1;
-    // Beyond these a border has no more to say, and the index stays small.
+    // Clamp: farther texels equal the border, and the index stays small.
     const double at = std::clamp(u * (last + 1) - 0.5, -2.0, last + 2.0);
     int first = floor_to_int(at), second = first + 1;
     MipPlace place;

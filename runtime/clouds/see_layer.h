@@ -8,7 +8,7 @@
 
 namespace opaline::runtime {
 
-/// What a layer adds to a ray that is seen from its origin, and what it leaves.
+/// Light that a layer adds to a ray seen from its origin, and its transmittance.
 struct SeenLayer {
     formats::Rgb radiance;  ///< its own light, in its haze [W m^-2 sr^-1]
     /// Light of the suns that droplets scatter by less than the peak's angle, which is taken to go
@@ -16,7 +16,7 @@ struct SeenLayer {
     formats::Rgb glow;
     formats::Rgb transmittance{1, 1, 1};      ///< exp(-tau_S): of ground, surfaces, sky
     formats::Rgb sun_transmittance{1, 1, 1};  ///< exp(-tau): of a sun's disc
-    double distance = 0;                      ///< mean, of what is seen [m]; 0: no layer
+    double distance = 0;                      ///< mean visible distance [m]; 0: no layer
 };
 
 /// The layer as a plane slab of the thickness that the ray sees (layer_march.h), whose light is
@@ -53,8 +53,7 @@ inline constexpr double kGroundSlack = 1.001;
 /// Distance at which a ray of unit direction meets the ground from above [m]; infinity if it does
 /// not.
 double ground_distance(const LayerLight& light, formats::Vec3 origin, formats::Vec3 direction);
-/// What of them ends a view: a surface at the first distance, or the ground at the second. Infinity
-/// stands for none.
+/// The end of a view: a surface at the first distance, or the ground at the second. Infinity: none.
 inline double opaque_distance(double surface, double ground) {
     return surface <= kGroundSlack * ground ? surface : ground;
 }

@@ -28,8 +28,8 @@ struct SkyLight {
     formats::Rgb irradiance;     ///< of the rest, on a horizontal plane [W m^-2]
     formats::Rgb horizon;        ///< mean radiance of the map's rest up to 6 degrees above it
 
-    /// The sun of a map: in directions d with dot(d, peak) > peak_cosine, what the map's luminance
-    /// exceeds sun_luminance by. Infinity: the map has no sun.
+    /// The sun of a map: luminance above sun_luminance in directions d with dot(d, peak) >
+    /// peak_cosine. Infinity: the map has no sun.
     float sun_luminance = std::numeric_limits<float>::infinity();
     formats::Vec3 peak{0, 1, 0};  ///< unit, world
     float peak_cosine = 1;

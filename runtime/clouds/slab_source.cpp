@@ -62,7 +62,7 @@ Rgb slab_source(const LayerLight& light, const SlabView& view, bool transmitted)
     for (std::size_t b = 0; b < 3; ++b) {
         const FluxShares flux = flux_shares(light.tables[b], light.record, view.depth[b], mu_v);
         const float taken = flux.across + flux.reflected;
-        // By reciprocity, what crosses toward the eye and what returns to it.
+        // By reciprocity, shares of light transmitted and reflected toward the eye.
         const float across = taken > 0 ? flux.across / taken : 1.0f;
         Rgb above = sky, below = ground;
         const float from_above = band_of(above, b), from_below = band_of(below, b);

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <type_traits>
 
+#include "formats/opal/thin_glass.h"
 #include "runtime/api_support.h"
 #include "runtime/texture.h"
 #include "runtime/volumes/suns.h"
@@ -80,6 +81,11 @@ opaline_status ImageTextures::make(const formats::AssetView& asset, GlNames& nam
             images.cutoff_mode[0] = hole->cutoff;
             images.cutoff_mode[1] = static_cast<float>(hole->mode);
             images.vertex_alpha = vertex_alpha;
+            if (hole->clear != 0) {  // hosts know no angle: as seen along the normal
+                const formats::ClearShare clear = formats::clear_share_of(*hole);
+                images.alpha_factor *=
+                    1 - clear.share * formats::thin_glass_transmittance(1, clear.eta);
+            }
         }
         images.srgb_table = table;
         primitive_.push_back(images);

@@ -65,7 +65,7 @@ void make_vertex_array(const AssetView& asset, GLuint radiance, GlAsset& gl) {
     if (!asset.texcoord.empty()) {
         bind_attribute(name, 3, gl.texcoord.name(), 2, sizeof(formats::Float2));
     }
-    if (gl.has_translucent || !gl.gloss.empty() || !gl.normal_maps.empty()) {
+    if (gl.normal.name() != 0) {
         bind_attribute(name, 4, gl.normal.name(), 3, sizeof(formats::Vec3));
     }
     if (!gl.roughness.empty() || !gl.gloss.empty()) {
@@ -115,7 +115,9 @@ formats::Result<GlAsset> upload_asset(const AssetView& asset, GLuint radiance) {
     if (!gl.normal_maps.empty()) {
         gl.tangent = make_buffer_of(asset.normal_maps.tangent, gl.resident);
     }
-    if (gl.has_translucent || needs.gloss || !gl.normal_maps.empty()) {
+    const bool has_glass = std::ranges::any_of(
+        asset.holes.record, [](const formats::HoleRecord& hole) { return hole.clear != 0; });
+    if (gl.has_translucent || needs.gloss || !gl.normal_maps.empty() || has_glass) {
         gl.normal = make_buffer_of(asset.normal, gl.resident);
     }
     if (!needs.levels.empty()) {

@@ -44,7 +44,8 @@ enum Uniform : GLint {
     kTurnedLeast = kTurnedLight + 9,
     kTurnedSuns,
     kTurnedSunDirection,
-    kTurnedSunLight = kTurnedSunDirection + static_cast<GLint>(kMaxSuns)
+    kTurnedSunLight = kTurnedSunDirection + static_cast<GLint>(kMaxSuns),
+    kHoleClear = kTurnedSunLight + static_cast<GLint>(kMaxSuns)
 };
 
 // What a surface's program has to do.
@@ -54,6 +55,7 @@ struct SurfaceKind {
     bool is_glossy = false, has_gloss_image = false;  ///< opaque
     bool glows = false, has_own_image = false;        ///< sends out light by itself; with an image
     bool has_holes = false, has_hole_image = false;   ///< light passes it in places; with an image
+    bool is_clear = false;                            ///< as glass
 
     bool has_normal_map = false, is_turned = false;  ///< by an image; and its light is
     bool has_two_sides = false;                      ///< turned light of a thin-walled surface
@@ -66,7 +68,7 @@ struct SurfaceKind {
                (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u) +
                (glows ? 64u : 0u) + (has_holes ? 128u : 0u) + (has_hole_image ? 256u : 0u) +
                (has_normal_map ? 512u : 0u) + (is_turned ? 1024u : 0u) +
-               (has_two_sides ? 2048u : 0u);
+               (has_two_sides ? 2048u : 0u) + (is_clear ? 4096u : 0u);
     }
 };
 
@@ -95,6 +97,7 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     kind.has_own_image = own != nullptr && own->image < asset.images.size();
     const formats::HoleRecord* const hole = hole_of(asset, primitive);
     kind.has_holes = hole != nullptr;
+    kind.is_clear = hole != nullptr && hole->clear != 0;
     kind.has_hole_image = hole != nullptr && hole->image < asset.images.size();
     const formats::NormalMapRecord* const map = normal_map_of(asset, primitive);
     kind.has_normal_map = map != nullptr;
@@ -106,7 +109,7 @@ SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
 }
 
 bool has_view(SurfaceKind kind) {
-    return kind.is_translucent || kind.is_glossy || kind.has_normal_map;
+    return kind.is_translucent || kind.is_glossy || kind.has_normal_map || kind.is_clear;
 }
 
 std::string define(const char* name, const std::string& value = {}) {
@@ -124,6 +127,7 @@ std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
     if (kind.has_own_image) text += define("OWN_TEXTURED");
     if (kind.has_holes) text += define("HOLES");
     if (kind.has_hole_image) text += define("HOLE_IMAGE");
+    if (kind.is_clear) text += define("CLEAR_HOLE");
     if (kind.has_holes && has_vertex_alpha) text += define("HOLE_VERTICES");
     if (kind.has_image()) text += define("HAS_TEXCOORD");
     if (kind.has_normal_map) text += define("NORMAL_MAP");
@@ -140,7 +144,7 @@ std::string fragment_text(SurfaceKind kind) {
     if (kind.has_image()) {
         text += define("WRAP_CLAMP", std::to_string(static_cast<int>(formats::Wrap::clamp))) +
                 define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
-                image_text;
+                define("WRAP_NEAREST", std::to_string(formats::kNearestBit)) + image_text;
     }
     text += cube_map_text;
     text += surface_text;
@@ -236,6 +240,10 @@ void set_hole(const DrawScene& scene, const TileGrid& grid, GLuint program,
     glProgramUniform3f(program, kHole, hole.alpha, hole.cutoff, static_cast<float>(hole.mode));
     glProgramUniform2ui(program, kFirstSample, static_cast<GLuint>(grid.first_column),
                         static_cast<GLuint>(grid.first_row));
+    if (hole.clear != 0) {
+        const formats::ClearShare clear = formats::clear_share_of(hole);
+        glProgramUniform2f(program, kHoleClear, clear.share, clear.eta);
+    }
     if (hole.image >= scene.asset.images.size()) return;
     glBindTextureUnit(5, scene.asset.images[hole.image].name());
     glProgramUniform2i(program, kHoleWrap, static_cast<GLint>(hole.wrap_u),
@@ -315,9 +323,12 @@ void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, cons
     glDepthFunc(GL_GREATER);
     glBindVertexArray(asset.vertex_array.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, asset.srgb_table.name());
+    glFrontFace(GL_CW);  // y points down
+    glCullFace(GL_BACK);
     for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
         const formats::PrimitiveRecord& primitive = asset.primitives[p];
         const SurfaceKind kind = surface_kind(asset, p);
+        (primitive.shows_back() ? glDisable : glEnable)(GL_CULL_FACE);
         const GLuint program = programs.program[kind.number()].name();
         glUseProgram(program);
         if (kind.is_textured) {
@@ -338,6 +349,7 @@ void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, cons
         if (kind.glows) set_own_light(scene, program, p);
         draw_triangles(primitive);
     }
+    glDisable(GL_CULL_FACE);
 }
 
 }  // namespace opaline::runtime

@@ -10,7 +10,7 @@ namespace opaline::runtime {
 
 /// Programs for each kind of surface that an asset has, by SurfaceKind::number.
 struct SurfacePrograms {
-    std::array<GlProgram, 4096> program;
+    std::array<GlProgram, 8192> program;
 };
 /// Errors: resource.
 formats::Result<SurfacePrograms> make_surface_programs(const GlAsset& asset);

@@ -89,9 +89,8 @@ bool is_flat(const AssetView& asset, const PrimitiveRecord& primitive, const Box
 }
 
 // Around these primitives and all volumes.
-BoundingSphere bound_parts(const AssetView& asset, std::span<const std::size_t> chosen) {
-    const std::vector<Vec3> corners = volume_corners(asset.volumes);
-    Box all = box_of(corners);
+Box box_of_parts(const AssetView& asset, std::span<const std::size_t> chosen) {
+    Box all = box_of(volume_corners(asset.volumes));
     for (const std::size_t p : chosen) {
         const Box box = box_of(positions_of(asset, asset.primitives[p]));
         if (!box.is_empty()) {
@@ -99,19 +98,35 @@ BoundingSphere bound_parts(const AssetView& asset, std::span<const std::size_t> 
             extend(all, box.high);
         }
     }
-    if (all.is_empty()) return {};
-    const Double3 centre{0.5 * (all.low.x + all.high.x), 0.5 * (all.low.y + all.high.y),
-                         0.5 * (all.low.z + all.high.z)};
-    double radius = 0;
-    const auto enclose = [&](std::span<const Vec3> positions) {
+    return all;
+}
+
+// Calls see(point) with all of their points.
+template <class See>
+void for_each_point(const AssetView& asset, std::span<const std::size_t> chosen, See&& see) {
+    const auto visit = [&](std::span<const Vec3> positions) {
         for (const Vec3 v : positions) {
-            if (is_finite(v)) radius = std::max(radius, norm(minus(widen(v), centre)));
+            if (is_finite(v)) see(widen(v));
         }
     };
-    enclose(corners);
+    visit(volume_corners(asset.volumes));
     for (const std::size_t p : chosen) {
-        enclose(positions_of(asset, asset.primitives[p]));
+        visit(positions_of(asset, asset.primitives[p]));
     }
+}
+
+Double3 middle_of(const Box& box) {
+    return {0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y),
+            0.5 * (box.low.z + box.high.z)};
+}
+
+BoundingSphere bound_parts(const AssetView& asset, std::span<const std::size_t> chosen) {
+    const Box all = box_of_parts(asset, chosen);
+    if (all.is_empty()) return {};
+    const Double3 centre = middle_of(all);
+    double radius = 0;
+    for_each_point(asset, chosen,
+                   [&](Double3 p) { radius = std::max(radius, norm(minus(p, centre))); });
     return {centre.x, centre.y, centre.z, radius};
 }
 
@@ -168,7 +183,35 @@ BoundingSphere bound_asset(const AssetView& asset) {
     return bound_parts(asset, all_primitives(asset));
 }
 
-BoundingSphere bound_object(const AssetView& asset) {
+namespace {
+
+// Thin for its width, and level.
+bool is_level(const Box& box) {
+    const Double3 size = box.size();
+    return size.y < 0.05 * std::hypot(size.x, size.z);
+}
+
+// Those that are no part of a level ground: the widest level part and what is level with it.
+std::vector<std::size_t> parts_above_ground(const AssetView& asset,
+                                            std::span<const std::size_t> parts) {
+    Box ground;
+    for (const std::size_t p : parts) {
+        const Box box = box_of(positions_of(asset, asset.primitives[p]));
+        if (is_level(box) && norm(box.size()) > norm(ground.size())) ground = box;
+    }
+    const double top = ground.high.y + 2e-3 * norm(ground.size());
+    std::vector<std::size_t> above;
+    for (const std::size_t p : parts) {
+        const Box box = box_of(positions_of(asset, asset.primitives[p]));
+        if (!is_level(box) || !(box.high.y <= top)) above.push_back(p);
+    }
+    const Box rest = box_of_parts(asset, above);
+    const bool is_below =
+        !rest.is_empty() && ground.low.y <= rest.low.y + 0.1 * (rest.high.y - rest.low.y);
+    return is_below ? above : std::vector<std::size_t>(parts.begin(), parts.end());
+}
+
+std::vector<std::size_t> object_parts(const AssetView& asset) {
     std::vector<std::size_t> chosen;
     std::size_t largest = 0;
     double largest_size = -1;
@@ -181,14 +224,52 @@ BoundingSphere bound_object(const AssetView& asset) {
             largest = p;
         }
     }
-    const BoundingSphere all = bound_parts(asset, chosen);
-    if (chosen.size() + asset.volumes.records.size() < 2 || chosen.empty()) return all;
+    if (chosen.size() + asset.volumes.records.size() < 2 || chosen.empty()) return chosen;
+    constexpr double kShrinksIt = 1.3, kDwarfs = 3;
+    const double radius = bound_parts(asset, chosen).radius;
+    const std::vector<std::size_t> above = parts_above_ground(asset, chosen);
+    if (radius >= kShrinksIt * bound_parts(asset, above).radius) return above;
     const PrimitiveRecord& primitive = asset.primitives[largest];
-    if (!is_flat(asset, primitive, box_of(positions_of(asset, primitive)))) return all;
-    constexpr double kDwarfs = 3;
-    std::erase(chosen, largest);
-    const BoundingSphere rest = bound_parts(asset, chosen);
-    return all.radius >= kDwarfs * rest.radius ? rest : all;
+    if (!is_flat(asset, primitive, box_of(positions_of(asset, primitive)))) return chosen;
+    std::vector<std::size_t> rest = chosen;
+    std::erase(rest, largest);
+    return radius >= kDwarfs * bound_parts(asset, rest).radius ? rest : chosen;
+}
+
+// Least distance from its middle at which both rims of the cylinder lie in the frame: a point at x,
+// y, z in the camera's frame does where |x| and |y| are below (distance - z) times the tangents.
+double distance_of(const UprightBounds& upright, double elevation, const CameraFrame& frame) {
+    constexpr int kPoints = 64;
+    const double c = std::cos(elevation), s = std::sin(elevation);
+    double least = 0;
+    for (int i = 0; i < kPoints; ++i) {
+        const double a = 2 * std::numbers::pi * i / kPoints;
+        const double x = upright.radius * std::sin(a), toward = upright.radius * std::cos(a);
+        for (const double h : {upright.half_height, -upright.half_height}) {
+            const double y = h * c - toward * s, z = h * s + toward * c;
+            least = std::max(
+                {least, z + std::abs(x) / frame.tan_half_x, z + std::abs(y) / frame.tan_half_y});
+        }
+    }
+    return least;
+}
+
+}  // namespace
+
+BoundingSphere bound_object(const AssetView& asset) {
+    return bound_parts(asset, object_parts(asset));
+}
+
+UprightBounds bound_upright(const AssetView& asset) {
+    const std::vector<std::size_t> parts = object_parts(asset);
+    const Box box = box_of_parts(asset, parts);
+    if (box.is_empty()) return {};
+    const Double3 centre = middle_of(box);
+    UprightBounds upright{0, 0.5 * (box.high.y - box.low.y)};
+    for_each_point(asset, parts, [&](Double3 p) {
+        upright.radius = std::max(upright.radius, std::hypot(p.x - centre.x, p.z - centre.z));
+    });
+    return upright;
 }
 
 Vec3 view_direction(double azimuth, double elevation) {
@@ -220,11 +301,17 @@ namespace {
 
 // Closed surfaces show as much front as back: half. Less than a quarter are backs of sheets.
 Vec3 choose_direction(const AssetView& asset) {
-    constexpr double kAzimuth = 30, kElevation = 18, kLeastFront = 0.25;
-    Vec3 best = view_direction(kAzimuth, kElevation);
+    constexpr double kAzimuth = 30, kLeastFront = 0.25;
+    // Low enough for a horizon in the upper part of the picture; flat things are seen from above.
+    constexpr double kUpright = 10, kFlat = 22;
+    const UprightBounds upright = bound_upright(asset);
+    const double height =
+        upright.radius > 0 ? std::min(1.0, 2 * upright.half_height / upright.radius) : 1;
+    const double elevation = kFlat + (kUpright - kFlat) * height;
+    Vec3 best = view_direction(kAzimuth, elevation);
     double most = front_share(asset, best);
     for (int turn = 1; turn < 4 && most < kLeastFront; ++turn) {
-        const Vec3 direction = view_direction(kAzimuth + 90 * turn, kElevation);
+        const Vec3 direction = view_direction(kAzimuth + 90 * turn, elevation);
         const double share = front_share(asset, direction);
         if (share > most) {
             most = share;
@@ -247,10 +334,8 @@ float near_plane_for(const AssetView& asset, Vec3 eye) {
     return narrow(std::max(0.5 * (distance - radius), 1e-3 * radius));
 }
 
-Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width, std::uint32_t height) {
-    if (!asset.clouds.empty() && asset.primitives.empty() && asset.volumes.empty()) {
-        return frame_layer(asset.clouds.records.front(), fov_y, width, height);
-    }
+Camera frame_from(const AssetView& asset, Vec3 direction, float fov_y, std::uint32_t width,
+                  std::uint32_t height) {
     Camera camera;
     camera.fov_y = fov_y;
     camera.width = width;
@@ -258,14 +343,29 @@ Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width, std
     const BoundingSphere sphere = bound_object(asset);
     const CameraFrame frame = camera_frame(camera);
     const double half = std::atan(std::min(frame.tan_half_x, frame.tan_half_y));
+    const Double3 d = widen(direction);
     constexpr double kMargin = 1.04;
-    const double distance = kMargin * usable_radius(sphere) / std::max(std::sin(half), 1e-3);
-    const Double3 d = widen(choose_direction(asset));
+    const double radius = usable_radius(sphere);
+    // The object lies within both bounds.
+    double distance = radius / std::max(std::sin(half), 1e-3);
+    if (sphere.radius > 0) {
+        const double elevation = std::atan2(d.y, std::hypot(d.x, d.z));
+        const double upright = distance_of(bound_upright(asset), elevation, frame);
+        distance = std::clamp(upright, radius, distance);
+    }
+    distance *= kMargin;
     camera.target = {narrow(sphere.x), narrow(sphere.y), narrow(sphere.z)};
     camera.eye = {narrow(sphere.x + distance * d.x), narrow(sphere.y + distance * d.y),
                   narrow(sphere.z + distance * d.z)};
     camera.near_plane = near_plane_for(asset, camera.eye);
     return camera;
+}
+
+Camera frame_asset(const AssetView& asset, float fov_y, std::uint32_t width, std::uint32_t height) {
+    if (!asset.clouds.empty() && asset.primitives.empty() && asset.volumes.empty()) {
+        return frame_layer(asset.clouds.records.front(), fov_y, width, height);
+    }
+    return frame_from(asset, choose_direction(asset), fov_y, width, height);
 }
 
 Camera orbit(const Camera& camera, float degrees) {

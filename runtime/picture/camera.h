@@ -38,10 +38,19 @@ struct BoundingSphere {
 /// Around all vertices of the asset and all bricks of its volumes.
 BoundingSphere bound_asset(const formats::AssetView& asset);
 
-/// Around what a picture is about: everything, but for a ground that would dwarf it. The largest
-/// primitive is such a ground if it is flat (a thin box, or a sheet whose triangles all face nearly
-/// the same way) and at least three times as large as all the rest.
+/// Around what a picture is about: everything but a ground. A ground is the widest level part that
+/// lies below the rest, with what is level with it (tiles), where the picture would hold the rest
+/// at less than 1/1.3 of its size with it. Any other flat primitive is left out only where it is at
+/// least three times as large as all the rest: a thin box, or a sheet whose triangles all face
+/// nearly the same way.
 BoundingSphere bound_object(const formats::AssetView& asset);
+
+/// The same as a cylinder around the vertical axis through the middle of its box, which an orbit
+/// keeps in frame; 0 for nothing. [m]
+struct UprightBounds {
+    double radius = 0, half_height = 0;
+};
+UprightBounds bound_upright(const formats::AssetView& asset);
 
 /// From a target to the eye, by angles [degrees]: azimuth from +Z toward +X, elevation above the
 /// horizon. Unit.
@@ -51,10 +60,15 @@ formats::Vec3 view_direction(double azimuth, double elevation);
 /// faces it; double-sided primitives always do. 1 for an asset without triangles.
 double front_share(const formats::AssetView& asset, formats::Vec3 direction);
 
-/// The default view: bound_object fills the frame, seen 18 degrees above the horizon, 30 degrees
-/// from +Z toward +X. Where more than three quarters of the area face away from there, the azimuth
-/// is that of the quarter turns that shows the largest share of front faces. Defined for every
-/// asset: empty, a point, any size. Of a cloud layer alone: frame_layer.h.
+/// A view from a unit direction in which what bound_object holds fills the frame, with a margin of
+/// 4 %, and stays in it while the camera orbits. Defined for every asset: empty, a point, any size.
+Camera frame_from(const formats::AssetView& asset, formats::Vec3 direction, float fov_y,
+                  std::uint32_t width, std::uint32_t height);
+
+/// The default view: frame_from 30 degrees from +Z toward +X, 10 degrees above the horizon, so that
+/// the horizon is in the picture; up to 22 degrees for what is lower than half its radius. Where
+/// more than three quarters of the area face away from there, the azimuth is that of the quarter
+/// turns that shows the largest share of front faces. Of a cloud layer alone: frame_layer.h.
 Camera frame_asset(const formats::AssetView& asset, float fov_y, std::uint32_t width,
                    std::uint32_t height);
 

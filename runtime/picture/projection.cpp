@@ -9,6 +9,14 @@ bool is_finite_vertex(const GridVertex& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.w);
 }
 
+// Rows of the grid go down: a front, counter-clockwise to the eye, has a negative determinant.
+bool is_back(const std::array<GridVertex, 3>& corner) {
+    const GridVertex &a = corner[0], &b = corner[1], &c = corner[2];
+    return a.x * (b.y * c.w - b.w * c.y) + a.y * (b.w * c.x - b.x * c.w) +
+               a.w * (b.x * c.y - b.y * c.x) >
+           0;
+}
+
 double dot_wide(formats::Vec3 a, double x, double y, double z) {
     return static_cast<double>(a.x) * x + static_cast<double>(a.y) * y +
            static_cast<double>(a.z) * z;
@@ -77,6 +85,7 @@ std::vector<GridTriangle> select_triangles(const formats::AssetView& asset,
                 corner[k] = vertices[triangle.vertex[k]];
             }
             if (!std::all_of(corner.begin(), corner.end(), is_finite_vertex)) continue;
+            if (!primitive.shows_back() && is_back(corner)) continue;
             const GridBox box = visible_box(corner, grid.near_plane);
             if (!(box.low_x <= box.high_x)) continue;
             const SampleRange columns = samples_within(box.low_x, box.high_x, grid.columns);

@@ -33,8 +33,9 @@ struct SampleGrid {
 std::vector<GridVertex> project_vertices(std::span<const formats::Vec3> positions,
                                          const Camera& camera, const SampleGrid& grid);
 
-/// All triangles of the asset that reach into the picture beyond the near plane, in the order of
-/// the file.
+/// All triangles of the asset that reach into the picture beyond the near plane and show the eye
+/// their front, or are of a primitive that shows its back (PrimitiveRecord::shows_back), in the
+/// order of the file.
 std::vector<GridTriangle> select_triangles(const formats::AssetView& asset,
                                            std::span<const GridVertex> vertices,
                                            const SampleGrid& grid);

@@ -171,8 +171,13 @@ SampleTest make_sample_test(const Job& job, const GridTriangle& triangle) {
         const float vertex_alpha =
             alphas.empty() ? 1.0f : interpolate(alphas, triangle.vertex, weight);
         const Float2 uv = interpolate_texcoord(job, triangle, weight);
+        const float cosine =
+            hole->clear == 0
+                ? 1.0f
+                : std::abs(view_at(job, job.asset.primitives[triangle.primitive], triangle, weight)
+                               .cosine);
         return sees_surface(*hole, alpha_at(job.asset, *hole, uv, vertex_alpha),
-                            {column, row, triangle.vertex[2]});
+                            {column, row, triangle.vertex[2], cosine});
     };
 }
 

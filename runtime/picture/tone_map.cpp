@@ -11,13 +11,13 @@ namespace {
 constexpr float kLargest = 1e37f;
 
 // NaN fails the comparison and becomes 0.
-float tame(float value) {
+float finite_part(float value) {
     return value > 0.0f ? std::min(value, kLargest) : 0.0f;
 }
 
 formats::Rgb cut_off(formats::Rgb radiance) {
-    return {std::min(tame(radiance.r), 1.0f), std::min(tame(radiance.g), 1.0f),
-            std::min(tame(radiance.b), 1.0f)};
+    return {std::min(finite_part(radiance.r), 1.0f), std::min(finite_part(radiance.g), 1.0f),
+            std::min(finite_part(radiance.b), 1.0f)};
 }
 
 std::uint8_t encode_byte(float linear) {
@@ -31,7 +31,7 @@ formats::Rgb tone_map_neutral(formats::Rgb radiance) {
     constexpr float kShoulder = 0.8f - kReflectance;
     constexpr float kDesaturation = 0.15f;
 
-    formats::Rgb c{tame(radiance.r), tame(radiance.g), tame(radiance.b)};
+    formats::Rgb c{finite_part(radiance.r), finite_part(radiance.g), finite_part(radiance.b)};
     const float least = std::min({c.r, c.g, c.b});
     const float offset =
         least < 2.0f * kReflectance ? least - least * least / (4.0f * kReflectance) : kReflectance;
@@ -40,13 +40,15 @@ formats::Rgb tone_map_neutral(formats::Rgb radiance) {
     const float peak = std::max({c.r, c.g, c.b});
     if (peak <= kShoulder) return c;
     constexpr float kRoom = 1.0f - kShoulder;
-    const float new_peak = 1.0f - kRoom * kRoom / (peak + kRoom - kShoulder);
-    const float keep = 1.0f / (kDesaturation * (peak - new_peak) + 1.0f);
-    const auto compress = [&](float x) {
-        const float scaled = x / peak * new_peak;
-        return std::clamp(new_peak + keep * (scaled - new_peak), 0.0f, 1.0f);
+    const auto compress = [](float x) {
+        return x <= kShoulder ? x : 1.0f - kRoom * kRoom / (x + kRoom - kShoulder);
     };
-    return {compress(c.r), compress(c.g), compress(c.b)};
+    const float new_peak = compress(peak);
+    const float keep = 1.0f / (kDesaturation * (peak - new_peak) + 1.0f);
+    const auto desaturate = [&](float x) {
+        return std::clamp(new_peak + keep * (compress(x) - new_peak), 0.0f, 1.0f);
+    };
+    return {desaturate(c.r), desaturate(c.g), desaturate(c.b)};
 }
 
 float encode_srgb(float linear) {

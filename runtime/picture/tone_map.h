@@ -15,10 +15,12 @@ struct DisplayPicture {
     std::vector<std::uint8_t> rgba;
 };
 
-/// Linear display colour, each band in [0, 1], from linear radiance: the Khronos PBR Neutral tone
-/// mapper (Khronos Group, "PBR Neutral Tone Mapper" specification, 2024): base colours below 0.76
-/// keep their hue and saturation, brighter ones are compressed toward white. Any input: negative
-/// values and NaN count as 0, infinity as the largest number.
+/// Linear display colour, each band in [0, 1], from linear radiance. Up to its shoulder at 0.76 the
+/// Khronos PBR Neutral tone mapper (Khronos Group, "PBR Neutral Tone Mapper" specification, 2024):
+/// base colours keep their hue and saturation. Above, its compression is applied to each band by
+/// itself, where the specification scales all bands alike: fire then goes from orange over yellow
+/// to white, as on film, and not to salmon. Its desaturation follows. Greys are the
+/// specification's. Any input: negative values and NaN count as 0, infinity as the largest number.
 formats::Rgb tone_map_neutral(formats::Rgb radiance);
 
 /// sRGB transfer function (IEC 61966-2-1), linear [0, 1] to encoded [0, 1].

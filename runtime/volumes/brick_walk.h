@@ -14,7 +14,7 @@ namespace opaline::runtime {
 struct BrickWalk {
     std::array<double, 3> origin{}, direction{};
     std::array<std::int32_t, 3> cell{};
-    double t = 0, end = 0;  ///< what is left of the ray; nothing if t >= end
+    double t = 0, end = 0;  ///< rest of the ray; empty if t >= end
 };
 
 /// A part of the ray within one brick that exists; begin < end, both finite.

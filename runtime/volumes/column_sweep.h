@@ -6,8 +6,7 @@
 
 namespace opaline::runtime {
 
-/// Sets the columns of those points of the bricks of one tile that stand in it: each point stands
-/// in one tile.
+/// Sets the columns of the points of bricks that lie in one tile. Each point lies in one tile.
 void sweep_tile(const SunColumns& volume, const ColumnFrame& frame,
                 std::span<const TileBrick> bricks, std::span<float> column);
 

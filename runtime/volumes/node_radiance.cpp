@@ -14,7 +14,7 @@ namespace {
 using formats::Rgb;
 using formats::VolumeRecord;
 
-// Where a node stands among the points of suns.
+// Position of a node among the points of suns.
 struct NodePlace {
     std::uint32_t brick = formats::kNoBrick;
     std::size_t point = 0;

@@ -55,14 +55,14 @@ std::uint32_t glow_terms(std::span<const formats::GlowRecord> glow, const Emitte
     return most;
 }
 
-// The light in the forms that volumes meet. Those with suns have the moments of the rest, the
-// others those of the whole.
+// The light in the forms that volumes need: moments of the rest for volumes with suns, of the whole
+// for others.
 struct Lights {
     const LightVector& whole;
     std::vector<LightVector> moment, moment_of_rest;
     struct SunLight {
         LightVector vector;
-        Rgb whole;                // what <V, vector> is a share of
+        Rgb whole;                // unattenuated light: <V, vector> is a share of it
         std::uint32_t joint = 0;  // its number among those of other directions
     };
     std::vector<SunLight> sun;

@@ -12,7 +12,7 @@
 
 namespace opaline::runtime {
 
-/// What of a volume's density stands between its points of suns (sun_light.h) and each sun.
+/// Density of a volume between its points of suns (sun_light.h) and each sun.
 struct SunColumns {
     VolumeLattice lattice;
     std::size_t volume = 0;                    ///< its number in the asset
@@ -33,11 +33,11 @@ std::vector<SunColumns> place_volumes(const formats::VolumesView& volumes);
 
 /// Finds the columns toward `suns` [world, unit] in all volumes.
 ///
-/// Columns stand a voxel apart along the two axes across which the sun's light runs least, and lean
-/// as it does: the plane at height h of the third axis meets column (U, V) at (U + m_u h, V + m_v
-/// h), so that in one plane all of them stand between voxels alike. Planes of voxels are added from
-/// the sun on, by the trapezoidal rule; a point reads the four columns around it. The same bits for
-/// any number of threads.
+/// Columns are a voxel apart along the two axes with the smaller components of the sun's direction,
+/// and parallel to it: the plane at height h of the third axis meets column (U, V) at (U + m_u h, V
+/// + m_v h), so that all columns have the same offset from voxels in one plane. Planes of voxels
+/// are added from the sun on, by the trapezoidal rule; a point reads the four columns around it.
+/// The same bits for any number of threads.
 void find_sun_columns(std::span<SunColumns> volumes, std::span<const formats::Vec3> suns,
                       unsigned threads);
 
@@ -45,8 +45,8 @@ void find_sun_columns(std::span<SunColumns> volumes, std::span<const formats::Ve
 float column_from(const SunColumns& volume, std::size_t number, formats::Vec3 sun,
                   formats::Vec3 from);
 
-/// Bricks have points on their faces in common. A point is known in the brick in which it stands:
-/// on upper faces that is the next one, if there is one.
+/// Bricks share points on their faces. The value of a point is stored in the brick that contains
+/// it: on upper faces that is the next one, if there is one.
 struct PointOwner {
     std::uint32_t brick = 0;
     std::size_t point = 0;
@@ -54,5 +54,12 @@ struct PointOwner {
 /// `block`: of the cell of `brick`; `place`: of the point in it, each up to `boxes`.
 PointOwner point_owner(std::uint32_t brick, const BrickBlock& block, std::uint32_t boxes,
                        const std::array<std::uint32_t, 3>& place);
+
+/// Numbers of the volumes other than `own` that may shadow its points from each sun: those whose
+/// table the light of that sun crosses before or while it crosses the table of `own`. Conservative
+/// up to the rounding of positions.
+std::vector<std::vector<std::size_t>> find_shades(std::span<const SunColumns> volumes,
+                                                  std::size_t own,
+                                                  std::span<const formats::Vec3> suns);
 
 }  // namespace opaline::runtime

@@ -9,7 +9,6 @@
 #include "runtime/parallel.h"
 #include "runtime/volumes/sun_columns.h"
 #include "runtime/volumes/sun_point.h"
-#include "runtime/volumes/sun_shadows.h"
 #include "runtime/volumes/volume_lattice.h"
 #include "runtime/volumes/volume_source.h"
 
@@ -63,7 +62,7 @@ Rgb find_share(const SunPoints& points, const SunPoint& point, std::size_t sun) 
 void light_point(const SunPoints& points, const SunPoint& point, std::span<Rgb> coefficient) {
     const formats::VolumeRecord& record = *points.columns().lattice.record;
     const VolumeLight::Part& part = points.part();
-    // Coloured rows may hold hues of the albedo, too, which densities do not know.
+    // Coloured rows may also hold hues of the albedo, which densities lack.
     const float most = record.bands == 1 ? 2.0f : 1.0f;
     for (std::size_t s = 0; s < part.suns; ++s) {
         const Rgb known = find_share(points, point, s);
@@ -83,7 +82,7 @@ void light_point(const SunPoints& points, const SunPoint& point, std::span<Rgb> 
     }
 }
 
-// Those of points that stand in another brick are copied behind it, or found.
+// Points in another brick are copied from it, or computed.
 void light_brick(const SunPoints& points, std::uint32_t brick, bool copies) {
     const VolumeLight::Part& part = points.part();
     const auto coefficient = [&](std::uint32_t of, std::size_t point) {

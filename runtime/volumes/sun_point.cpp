@@ -14,8 +14,8 @@ using formats::Rgb;
 
 constexpr float kMost = 1e6f;  // of a sum that lowers light; NaN lowers nothing
 
-// Whether a point that stands in no next brick is on an edge: bricks that meet there have other
-// neighbours each, and must agree.
+// Whether a point without a next brick is on an edge. Bricks that meet there have different
+// neighbours, and must agree on its value.
 bool is_common(const std::array<std::uint32_t, 3>& place, std::uint32_t boxes) {
     const auto on_faces =
         std::ranges::count_if(place, [&](std::uint32_t x) { return x % boxes == 0; });

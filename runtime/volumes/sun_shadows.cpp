@@ -1,4 +1,4 @@
-#include "runtime/volumes/sun_shadows.h"
+#include "runtime/volumes/sun_columns.h"
 
 #include <algorithm>
 #include <array>

@@ -12,8 +12,8 @@
 
 namespace opaline::runtime {
 
-/// Small bright lights. A polynomial of degree 4 stands for the phase function where light is
-/// smooth; what is split off here meets the phase function itself.
+/// Small bright lights. Smooth light is scattered by a polynomial of degree 4; the suns split off
+/// here by the phase function itself.
 inline constexpr std::size_t kMaxSuns = 8;
 
 /// The light of a bright texel, or a share of it.
@@ -32,10 +32,9 @@ struct SplitLight {
 /// Texels brighter than the threshold, the larger of 1/128 of the whole luminance and the ninth
 /// brightest texel, give a share of their light to a sun: 0 at the threshold, all from twice the
 /// threshold on, linear between. So both parts are continuous functions of the light. A small light
-/// stands in the four texels around it (nearest_texels.h): the direction of a sun is the mean of
-/// those of all suns less than 3 / n rad away, weighted by luminance, which is that of the light
-/// itself. Light that is not finite stays in the rest. `integral`: texel_integrals.h; n x n texels
-/// a face.
+/// fills the four texels around it (nearest_texels.h): the direction of a sun is the mean over all
+/// suns less than 3 / n rad away, weighted by luminance, which is that of the light itself. Light
+/// that is not finite stays in the rest. `integral`: texel_integrals.h; n x n texels a face.
 SplitLight split_suns(std::span<const double> integral, std::uint32_t n);
 
 /// The light vector of a sun alone.

@@ -213,6 +213,17 @@ void follow(March& march) {
 
 }  // namespace
 
+LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight& light) {
+    LitVolumes lit;
+    lit.light = &light;
+    for (std::size_t v = 0; v < volumes.records.size(); ++v) {
+        if (const auto lattice = make_lattice(volumes, volumes.records[v])) {
+            lit.entry.push_back({*lattice, v, make_glow(volumes, v)});
+        }
+    }
+    return lit;
+}
+
 MarchResult march_volumes(const LitVolumes& volumes, const MarchRay& ray,
                           const MarchOptions& options) {
     March march{.light = *volumes.light,

@@ -1,12 +1,31 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
+#include <vector>
 
 #include "formats/opal/rgb.h"
 #include "formats/opal/vec3.h"
-#include "runtime/volumes/lit_volumes.h"
+#include "formats/opal/volumes.h"
+#include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_glow.h"
+#include "runtime/volumes/volume_lattice.h"
 
 namespace opaline::runtime {
+
+/// All volumes under one light, ready for rays; refers to the asset and to the light.
+struct LitVolumes {
+    struct Entry {
+        VolumeLattice lattice;
+        std::size_t volume = 0;  ///< its number in the asset
+        VolumeGlow glow;         ///< its own light
+    };
+    std::vector<Entry> entry;
+    const VolumeLight* light = nullptr;
+};
+
+/// Preconditions: `light` is of these volumes and outlives the result, as their arrays do.
+LitVolumes light_volumes(const formats::VolumesView& volumes, const VolumeLight& light);
 
 /// Distances t from `origin` along `direction` with begin <= t <= end.
 struct MarchRay {
@@ -24,10 +43,11 @@ struct MarchOptions {
 
 struct MarchResult {
     formats::Rgb radiance;  ///< scattered or sent out toward the origin [W m^-2 sr^-1]
-    formats::Rgb transmittance{1, 1, 1};  ///< of what lies behind
+    formats::Rgb transmittance{1, 1, 1};  ///< of light from behind
 };
 
-/// What volumes add to a ray that is seen from its origin, and what they leave of the light behind:
+/// Light that volumes add to a ray seen from its origin, and their transmittance of light from
+/// behind:
 ///
 ///     L = int_begin^end T(t) sum_v (sigma_t,v albedo_v density_v(t) max(0, J_v(t, -direction)) +
 ///                                   glow_v(t)) dt,

@@ -54,7 +54,7 @@ inline formats::Rgb eval_node(const VolumeLight& light, std::size_t volume, std:
     return source;
 }
 
-/// What suns add to J at a point of a brick, apart in their terms, each of which counts by what is
+/// Contribution of suns to J at a point of a brick by term; each term is attenuated differently
 /// between the point and the eye.
 using SunSource = std::array<formats::Rgb, kMaxSunTerms>;
 

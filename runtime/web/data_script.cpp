@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "formats/opal/half.h"
+#include "runtime/web/packed_image.h"
 
 namespace opaline::runtime {
 namespace {
@@ -53,7 +54,8 @@ void DataScript::add(std::string_view name, const char* type, std::span<const st
                   type + "\",\"" + base64_of(bytes) + "\")");
 }
 
-void DataScript::put_radiance(const std::string& name, std::span<const formats::Rgb> values) {
+void DataScript::put_radiance(const std::string& name, std::span<const formats::Rgb> values,
+                              std::uint32_t width, unsigned dropped_bits) {
     constexpr float kMost = 60000;  // below the largest half
     float most = 0;
     for (const formats::Rgb value : values) {
@@ -64,10 +66,15 @@ void DataScript::put_radiance(const std::string& name, std::span<const formats::
     halves.reserve(3 * values.size());
     for (const formats::Rgb value : values) {
         for (const float band : {value.r, value.g, value.b}) {
-            halves.push_back(formats::half_from_float(std::min(band / scale, kMost)));
+            const std::uint32_t half = formats::half_from_float(std::min(band / scale, kMost));
+            halves.push_back(
+                static_cast<std::uint16_t>((half + (1u << dropped_bits >> 1)) >> dropped_bits));
         }
     }
-    put(name, std::span<const std::uint16_t>(halves));
+    const std::vector<std::byte> packed = pack_image(halves, std::max(width, 1u));
+    add_statement("opaline.putPacked(" + script_literal(owner_) + "," + script_literal(name) + "," +
+                  std::to_string(width) + "," + std::to_string(halves.size()) + "," +
+                  std::to_string(dropped_bits) + ",\"" + base64_of(packed) + "\")");
     put(name + ".scale", std::span<const float>(&scale, 1));
 }
 

@@ -45,9 +45,11 @@ class DataScript {
     void put_records(std::string_view name, std::span<const Record> records) {
         add(name, "u32", std::as_bytes(records));
     }
-    /// Values >= 0 as halves, three a value, times the number `name.scale`; they err by 2^-12 down
-    /// to 1e-9 of the brightest.
-    void put_radiance(const std::string& name, std::span<const formats::Rgb> values);
+    /// An image of values >= 0 as halves, packed (packed_image.h), times the number `name.scale`.
+    /// Halves lose their last `dropped_bits` bits: they err by 2^(dropped_bits - 12) down to 1e-9
+    /// of the brightest. `width` [pixels] > 0 where there are any.
+    void put_radiance(const std::string& name, std::span<const formats::Rgb> values,
+                      std::uint32_t width, unsigned dropped_bits);
     /// A statement of its own.
     void add_statement(std::string_view statement);
 

@@ -83,6 +83,7 @@ void put_emitters(DataScript& script, const formats::EmittersView& emitters) {
 // where there is a cloud layer, else 0.
 void put_camera(DataScript& script, const AssetView& asset) {
     const Camera camera = frame_asset(asset, 32, 1, 1);
+    const UprightBounds upright = bound_upright(asset);
     const BoundingSphere all = bound_asset(asset);
     const float values[] = {camera.eye.x,
                             camera.eye.y,
@@ -94,7 +95,10 @@ void put_camera(DataScript& script, const AssetView& asset) {
                             static_cast<float>(all.y),
                             static_cast<float>(all.z),
                             static_cast<float>(all.radius),
-                            asset.clouds.empty() ? 0 : near_plane_for(asset, camera.eye)};
+                            asset.clouds.empty() ? 0 : near_plane_for(asset, camera.eye),
+                            static_cast<float>(bound_object(asset).radius),
+                            static_cast<float>(upright.radius),
+                            static_cast<float>(upright.half_height)};
     script.put("camera", std::span<const float>(values));
 }
 

@@ -16,6 +16,10 @@ namespace {
 using formats::Environment;
 using formats::Rgb;
 
+// Bits of halves that lights do without: what surfaces send on is a sum of many pixels, and a pixel
+// of the background errs by 1/512, half a step of a screen.
+constexpr unsigned kDroppedOfLight = 1, kDroppedOfBackground = 3;
+
 // Direction, then `last`; radiance, then the solid angle: two texels a disc.
 void put_discs(DataScript& script, const std::string& name,
                std::span<const formats::DistantDisc> discs, bool wants_chord) {
@@ -43,7 +47,7 @@ void put_cells(DataScript& script, const GlossLight::Cells& cells) {
 
 void put_shining(DataScript& script, const Environment& environment, unsigned threads) {
     const DividedLight divided = divide_light(environment, threads);
-    script.put_radiance("cube", divided.cube);
+    script.put_radiance("cube", divided.cube, kPageTexels, kDroppedOfLight);
     script.put("points", std::span<const float>(divided.points));
     put_discs(script, "suns", divided.suns, false);
 }
@@ -62,7 +66,7 @@ void put_background(DataScript& script, const Environment& environment, unsigned
     const float turn[] = {map.u_offset, map.u_sign};
     script.put("background.shape", std::span<const std::uint32_t>(shape));
     script.put("background.turn", std::span<const float>(turn));
-    script.put_radiance("background", map.pixel);
+    script.put_radiance("background", map.pixel, map.width, kDroppedOfBackground);
 }
 
 }  // namespace
@@ -82,7 +86,8 @@ std::string make_light_script(const std::string& owner, const PageLight& light,
     if (needs.gloss) put_cells(script, make_gloss_light(environment, threads).cells);
     for (const SpecularLight::Map& map :
          prefilter_specular(environment, needs.levels, {}, threads).maps) {
-        script.put_radiance("mirrored." + std::to_string(map.level), map.radiance.pixel);
+        script.put_radiance("mirrored." + std::to_string(map.level), map.radiance.pixel,
+                            map.radiance.width, kDroppedOfLight);
     }
     return script.text();
 }

@@ -22,8 +22,8 @@ struct PageLightNeeds {
 
 /// A script that hands a light to the page under the name `owner`, as the page projects and shows
 /// it: as divide_light.h has it; what eyes see, at most 1024 x 512 pixels; cells and blurred maps
-/// for gloss, if needed. Radiance is stored as halves times a scale: it errs by 2^-12 down to 1e-9
-/// of the brightest pixel.
+/// for gloss, if needed. Radiance is stored as halves times a scale: it errs by 2^-11 down to 1e-9
+/// of the brightest pixel, that of the background by 2^-9.
 /// `above`: where the asset has a cloud layer, this light above it at time 0: the page itself finds
 /// what is below and what that needs.
 std::string make_light_script(const std::string& owner, const PageLight& light,

@@ -3,7 +3,7 @@
 
 int main(void) {
     opaline_asset* asset = NULL;
-    opaline_status status = opaline_asset_load(NULL, 0, &asset);
+    opaline_status status = opaline_asset_load_path(NULL, &asset);
     if (status != OPALINE_INVALID_ARGUMENT || opaline_last_error()[0] == '\0') {
         return 1;
     }

@@ -1,5 +1,5 @@
 // Elements of particles and rows that gather them: how even a furnace box is, how sharp a caustic.
-// Prints tables of RESULTS.md, "Particles of lamps", as markdown; half a minute.
+// Prints both tables as markdown; half a minute.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -10,7 +10,6 @@
 #include <string>
 #include <thread>
 
-#include "bake/calibration/calibration.h"
 #include "bake/example/example_scenes.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/pipeline/pipeline.h"
@@ -60,13 +59,12 @@ formats::Scene model() {
     return imported ? std::move(imported).value().scene : formats::Scene{};
 }
 
-// As `opaline plan` states it, from rates measured in this run.
+// As `opaline plan` states it before the first bake.
 double predicted_seconds(const formats::Scene& scene, const Knobs& knobs) {
     const unsigned threads = std::max(1u, std::thread::hardware_concurrency());
-    static const Rates rates = measure_rates(all_effects(), threads);
     const SceneFacts facts = inspect_scene(scene);
     auto plan = plan_bake(scene, facts, knobs);
-    return predict_costs(scene, facts, knobs, rates, threads, plan).seconds;
+    return predict_costs(scene, facts, knobs, {}, threads, plan).seconds;
 }
 
 void plan_against_everything(benchmark::State& state, formats::Scene (*make)(),

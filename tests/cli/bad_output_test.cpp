@@ -92,6 +92,19 @@ TEST(BadOutput, FullDiskLeavesTheFormerFileAndNothingElse) {
     EXPECT_EQ(outcome.out, "former\nout.opal\n");
 }
 
+TEST(BadOutput, PastTheLimitOfFileSizesLeavesTheFormerFileAndNothingElse) {
+    SmallScene small;
+    const std::string file = small.baked(), out = small.path("a.exr");
+    write_file(out, "former");
+    const Outcome outcome = run_any({"sh", "-c",
+                                     "ulimit -f 20; exec " OPALINE_PROGRAM " render '" + file +
+                                         "' --light studio --backend cpu -o '" + out + "'"});
+    EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
+    EXPECT_THAT(outcome.err, StartsWith("opaline: error: " + out));
+    EXPECT_THAT(outcome.err, HasSubstr("File too large (raise the limit of file sizes"));
+    EXPECT_EQ(read_text(out), "former");
+}
+
 TEST(BadOutput, PictureOnAFullDiskLeavesNothing) {
     SmallScene small;
     const std::string file = small.baked();

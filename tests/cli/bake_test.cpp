@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "bake/calibration/rates_cache.h"
 #include "tests/cli/small_scene.h"
-#include "tests/support/rates.h"
 
 namespace opaline::tests {
 namespace {
@@ -183,8 +184,6 @@ double seconds_of(const Json& report, const std::string& name) {
 TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     SmallScene small;
     const TemporaryFolder cache;
-    ASSERT_TRUE(bake::write_rates(cache / "opaline/calibration.json", bake::this_machine(),
-                                  make_rates()));
     double seconds[2] = {};
     for (const int i : {0, 1}) {
         const std::string report = small.path("r" + std::to_string(i) + ".json");
@@ -197,6 +196,26 @@ TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     }
     EXPECT_LT(seconds[1], 0.3 * seconds[0]) << "about 1 % of it";
     EXPECT_EQ(read_text(small.path("a0.opal")), read_text(small.path("a1.opal")));
+}
+
+TEST(Bake, CompressionChangesTheSizeOfTheFileAndNoLight) {
+    SmallScene small;
+    std::map<std::string, std::uintmax_t> size;
+    std::string light;
+    for (const std::string compression : {"none", "fast", "best"}) {
+        const std::string out = small.path(compression + ".opal");
+        const Outcome bake = run_opaline(
+            {"bake", small.scene(), "-o", out, "--quality", "draft", "--compression", compression});
+        ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        size[compression] = std::filesystem::file_size(out);
+        EXPECT_EQ(run_opaline({"verify", out}).exit_code, 0);
+        const std::string table = small.path("light.csv");
+        ASSERT_EQ(run_opaline({"relight", out, "--light", "studio", "-o", table}).exit_code, 0);
+        if (light.empty()) light = read_text(table);
+        EXPECT_EQ(read_text(table), light);
+    }
+    EXPECT_LT(size["fast"], size["none"]);
+    EXPECT_LE(size["best"], size["fast"]);
 }
 
 TEST(Bake, SameBytesWhereverTheSceneLies) {
@@ -232,15 +251,22 @@ TEST(Bake, ProgressIsJsonLinesOnRequestAndSilentOffATerminal) {
     ASSERT_EQ(json.exit_code, 0);
     std::istringstream lines(json.err);
     std::string line;
-    int steps = 0;
+    std::map<std::string, std::vector<std::string>> events;  // by stage
     while (std::getline(lines, line)) {
         if (line.empty() || line[0] != '{') continue;
         const Json step = Json::parse(line);
         EXPECT_LE(step.at("done").get<double>(), step.at("total").get<double>());
-        EXPECT_FALSE(step.at("stage").get<std::string>().empty());
-        ++steps;
+        EXPECT_GE(step.at("seconds").get<double>(), 0);
+        EXPECT_TRUE(step.at("eta_seconds").is_null() || step.at("eta_seconds").get<double>() >= 0);
+        events[step.at("stage")].push_back(step.at("event"));
     }
-    EXPECT_GT(steps, 0);
+    EXPECT_GT(events.size(), 1u);
+    EXPECT_EQ(events["bake"], (std::vector<std::string>{"begin", "end"}));
+    for (const auto& [stage, seen] : events) {
+        EXPECT_EQ(seen.front(), "begin") << stage;
+        EXPECT_EQ(seen.back(), "end") << stage;
+        EXPECT_LE(seen.size(), 22u) << stage;
+    }
     const Outcome silent = run_opaline({"bake", small.scene(), "-o", out});
     EXPECT_THAT(silent.err, StartsWith(out + ": 8 receivers, "));
     EXPECT_EQ(std::count(silent.err.begin(), silent.err.end(), '\n'), 1);

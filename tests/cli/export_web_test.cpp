@@ -1,6 +1,8 @@
 // The folder that `export-web` writes; tests/runtime/web looks at the page.
 #include <gmock/gmock.h>
 
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 
 #include "tests/cli/small_scene.h"
@@ -31,6 +33,17 @@ TEST(ExportWeb, FolderHasEachLightAndReplacesAnEarlierOne) {
     ASSERT_EQ(after.exit_code, 0) << after.err;
     EXPECT_THAT(list_folder(page), Not(Contains("light-1.js")));
     EXPECT_EQ(list_folder(small.folder()), (Arguments{"page", "scene.glb", "scene.opal"}));
+}
+
+TEST(ExportWeb, APageWithTheLightsByDefaultIsSmall) {
+    SmallScene small;
+    const std::string page = small.path("page");
+    ASSERT_EQ(run_opaline({"export-web", small.baked(), "-o", page}).exit_code, 0);
+    std::uintmax_t bytes = 0;
+    for (const std::string& name : list_folder(page)) {
+        bytes += std::filesystem::file_size(page + "/" + name);
+    }
+    EXPECT_LT(bytes, 2'000'000u);
 }
 
 TEST(ExportWeb, FolderThatHoldsOtherThingsStaysAsItIs) {

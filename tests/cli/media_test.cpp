@@ -108,6 +108,21 @@ TEST_F(MediaOption, BakeTellsWhichMediaFileItRead) {
               Json::parse(read_text(small_.path("plain.json"))).at("scene").at("sha256"));
 }
 
+// Volumes lie in libraries.
+TEST_F(MediaOption, AllowPathReadsFilesOfAnotherFolder) {
+    const TemporaryFolder library;
+    write_file(library / "table.csv", "-1 1\n1 1\n");
+    const std::string file =
+        media({{"Brick",
+                {{"preset", "marble"},
+                 {"phase", {{"type", "table"}, {"file", (library / "table.csv").string()}}}}}});
+    EXPECT_THAT(refuse(file), HasSubstr("--allow-path DIR"));
+    const auto subjects = translucent({"--media", file, "--allow-path", small_.folder().string(),
+                                       "--allow-path", library.path().string()});
+    ASSERT_EQ(subjects.size(), 1u);
+    EXPECT_THAT(subjects[0], HasSubstr("Brick"));
+}
+
 TEST_F(MediaOption, MissingFileIsNamed) {
     refuse(small_.path("nowhere.json"));
 }

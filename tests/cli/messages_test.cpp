@@ -81,6 +81,45 @@ TEST(Messages, UsageErrorsSayWhatIsAccepted) {
     }
 }
 
+// Review 2, fault 21: what a newcomer does first, and what to do instead.
+TEST(Messages, SlipsOfANewcomerSayWhatToDo) {
+    SmallScene small;
+    const std::string scene = small.scene(), file = small.baked(), none = small.path("none.opal");
+    const std::vector<Case> cases = {
+        {{"render", scene, "-o", small.path("a.png")},
+         scene + ": is a scene, not an .opal file (bake it first: opaline bake scene.glb -o "
+                 "scene.opal)"},
+        {{"bake", file, "-o", small.path("b.opal")},
+         file + ": is baked already (did you mean `opaline render scene.opal`?"},
+        {{"bake", scene, "-o", small.path("y.glb")},
+         small.path("y.glb") + ": --output: programs would take it for a scene by its ending (end "
+                               "the name in .opal)"},
+        {{"example", "stature"}, "there is no example 'stature' (did you mean 'statue'?"},
+        {{"example"}, "example: a name is needed"},
+        // Before the file is read, which here there is not.
+        {{"render", none, "--light", "studoi", "-o", small.path("a.png")},
+         "studoi: is neither a file nor a built-in light (did you mean 'studio'? "},
+        {{"relight", none, "--light", "studoi", "-o", small.path("a.csv")},
+         "studoi: is neither a file nor a built-in light (did you mean 'studio'? "},
+    };
+    for (const auto& [arguments, message] : cases) {
+        const Outcome outcome = run_opaline(arguments);
+        EXPECT_NE(outcome.exit_code, 0) << ::testing::PrintToString(arguments);
+        EXPECT_THAT(outcome.err, StartsWith("opaline: error: " + message));
+    }
+    EXPECT_EQ(list_folder(small.folder()), (Arguments{"scene.glb", "scene.opal"}));
+}
+
+TEST(Messages, AnExampleWithoutAFolderGetsOneOfItsName) {
+    const TemporaryFolder folder;
+    const auto write = [&](const char* name) {
+        return run_any({"env", "-C", folder.path().string(), OPALINE_PROGRAM, "example", name});
+    };
+    EXPECT_EQ(write("glossy").out, "glossy/glossy.gltf\nglossy/glossy.bin\n");
+    EXPECT_EQ(write("black").exit_code, 0);
+    EXPECT_EQ(list_folder(folder.path()), (Arguments{"black.exr", "glossy"}));
+}
+
 TEST(Messages, SizesOutOfRangeAreSaidToBe) {
     SmallScene small;
     const Outcome outcome = run_opaline({"render", small.baked(), "--light", "white", "-o",

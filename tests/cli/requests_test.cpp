@@ -53,14 +53,12 @@ TEST_F(Requests, FewerPhaseTermsThanTheErrorNeedsAreTakenWithAWarning) {
     EXPECT_THAT(plan_dipole("25"), Not(HasSubstr("--phase-terms")));
     EXPECT_THAT(plan_dipole("1"), HasSubstr("--phase-terms 1 was taken as given"));
     EXPECT_THAT(plan(forward, {"--phase-terms", "25"}).err,
-                HasSubstr("--phase-terms: does nothing here"))
+                HasSubstr("not used here: --phase-terms"))
         << "random walks carry light scattered once";
 }
 
 TEST_F(Requests, TermsOfAnIsotropicPhaseFunctionAreOne) {
-    EXPECT_THAT(plan(kFog, {"--phase-terms", "16"}).err,
-                HasSubstr("--phase-terms: does nothing here: nothing scatters once into some "
-                          "directions more than into others"));
+    EXPECT_THAT(plan(kFog, {"--phase-terms", "16"}).err, HasSubstr("not used here: --phase-terms"));
     EXPECT_THAT(plan(kFog, {"--phase-terms", "1"}).err, Not(HasSubstr("--phase-terms")));
 }
 
@@ -69,13 +67,13 @@ TEST_F(Requests, OptionsOfMediaSayThatAnOpaqueSceneHasNone) {
                                "--depth-samples", "3",   "--phase-terms", "4",
                                "--separate-terms"};
     const Outcome opaque = bake("", options);
-    for (const char* option :
-         {"--samples", "--epsilon", "--depth-samples", "--phase-terms", "--separate-terms"}) {
-        EXPECT_THAT(opaque.err, HasSubstr(std::string(option) + ": does nothing here"));
+    EXPECT_THAT(opaque.err, ContainsRegex("not used here: --.*, --separate-terms"));
+    for (const char* option : {"--samples", "--epsilon", "--depth-samples", "--phase-terms"}) {
+        EXPECT_THAT(opaque.err, HasSubstr(std::string(option) + ", "));
     }
-    EXPECT_THAT(plan("", {}).err, Not(HasSubstr("does nothing")));
+    EXPECT_THAT(plan("", {}).err, Not(HasSubstr("not used here")));
     EXPECT_THAT(plan(std::string(kFog) + R"(, "phase": {"type": "hg", "g": 0.7})", options).err,
-                Not(HasSubstr("does nothing")));
+                Not(HasSubstr("not used here")));
 }
 
 TEST_F(Requests, NamedEffectsThatAreLeftOutAreExplained) {

@@ -60,7 +60,7 @@ Outcome run_any(const Arguments& command, const std::function<void(int)>& when_s
 }
 
 Outcome run_opaline(Arguments arguments, const std::function<void(int)>& when_started) {
-    // Rates of this machine are measured once for all tests, and not put into the user's cache.
+    // What its bakes teach and its test lights are not put into the user's cache.
     arguments.insert(arguments.begin(),
                      {"env", std::string("XDG_CACHE_HOME=") + OPALINE_TEST_CACHE, OPALINE_PROGRAM});
     return run_any(arguments, when_started);

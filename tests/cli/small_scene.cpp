@@ -10,7 +10,10 @@ Json add_square(AssetBuilder& asset, float y, float half, unsigned material) {
     const auto position =
         asset.add<float>({-half, y, -half, -half, y, half, half, y, half, half, y, -half}, "VEC3");
     const auto index = asset.add<std::uint16_t>({0, 1, 2, 0, 2, 3}, "SCALAR");
-    return {{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", material}};
+    const auto normal = asset.add<float>({0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0}, "VEC3");
+    return {{"attributes", {{"POSITION", position}, {"NORMAL", normal}}},
+            {"indices", index},
+            {"material", material}};
 }
 
 }  // namespace
@@ -36,12 +39,14 @@ AssetBuilder two_squares() {
 }
 
 AssetBuilder wavy_sheet(unsigned n) {
-    std::vector<float> position;
+    std::vector<float> position, normal;
     std::vector<std::uint32_t> index;
     for (unsigned z = 0; z < n; ++z) {
         for (unsigned x = 0; x < n; ++x) {
             const auto u = static_cast<float>(x), v = static_cast<float>(z);
             position.insert(position.end(), {u, 3 * std::sin(0.3f * u) * std::sin(0.3f * v), v});
+            normal.insert(normal.end(), {-0.9f * std::cos(0.3f * u) * std::sin(0.3f * v), 1,
+                                         -0.9f * std::sin(0.3f * u) * std::cos(0.3f * v)});
             if (x + 1 < n && z + 1 < n) {
                 const unsigned a = z * n + x;
                 index.insert(index.end(), {a, a + n, a + n + 1, a, a + n + 1, a + 1});
@@ -51,7 +56,9 @@ AssetBuilder wavy_sheet(unsigned n) {
     AssetBuilder asset;
     const auto positions = asset.add<float>(position, "VEC3");
     const auto indices = asset.add<std::uint32_t>(index, "SCALAR");
-    asset.add_node(asset.add_mesh({{"POSITION", positions}}, {{"indices", indices}}));
+    const auto normals = asset.add<float>(normal, "VEC3");
+    asset.add_node(
+        asset.add_mesh({{"POSITION", positions}, {"NORMAL", normals}}, {{"indices", indices}}));
     return asset;
 }
 

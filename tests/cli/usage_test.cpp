@@ -8,8 +8,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-const Arguments kCommands = {"bake",    "plan",  "info",    "verify",    "relight", "render",
-                             "compare", "phase", "example", "reference", "mie",     "slab"};
+const Arguments kCommands = {"bake",   "plan",    "info",  "verify",  "relight",
+                             "render", "compare", "phase", "example", "reference",
+                             "mie",    "slab",    "help"};
 
 TEST(Usage, HelpListsEveryCommandAndTheExitCodes) {
     const Outcome help = run_opaline({"--help"});
@@ -26,6 +27,29 @@ TEST(Usage, EveryCommandExplainsItselfWithAnExample) {
         const Outcome help = run_opaline({command, "--help"});
         EXPECT_EQ(help.exit_code, 0) << command;
         EXPECT_THAT(help.out, HasSubstr("Example:\n  opaline " + command + " ")) << command;
+    }
+}
+
+// Review 2, fault 21: neither was known.
+TEST(Usage, HelpExplainsACommandByNameAndVIsTheVersion) {
+    EXPECT_EQ(run_opaline({"help"}).out, run_opaline({"--help"}).out);
+    EXPECT_EQ(run_opaline({"help", "bake"}).out, run_opaline({"bake", "--help"}).out);
+    EXPECT_EQ(run_opaline({"-v"}).out, run_opaline({"--version"}).out);
+    const Outcome unknown = run_opaline({"help", "rendr"});
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_THAT(unknown.err, HasSubstr("there is no command 'rendr'; did you mean 'render'?"));
+}
+
+TEST(Usage, WhatAFirstBakeNeedsStandsFirstInItsHelp) {
+    const std::string help = run_opaline({"bake", "--help"}).out;
+    const std::size_t others = help.find("\nWhat is simulated:\n");
+    ASSERT_NE(others, std::string::npos);
+    for (const char* option :
+         {"--output", "--media", "--quality", "--error", "--metres-per-unit"}) {
+        EXPECT_LT(help.find(option), others) << option;
+    }
+    for (const char* option : {"--threads", "--volume-walks", "--emitter-rays", "--report"}) {
+        EXPECT_GT(help.find(std::string("\n  ") + option), others) << option;
     }
 }
 

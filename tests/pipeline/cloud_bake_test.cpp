@@ -18,7 +18,6 @@
 #include "runtime/clouds/layer_light.h"
 #include "runtime/clouds/see_layer.h"
 #include "tests/support/media_bake.h"
-#include "tests/support/rates.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/volumes.h"
@@ -199,7 +198,7 @@ TEST(CloudBake, CostsArePredictedForItsEntriesInBothFidelities) {
         scene.layers[0].paper = is_paper;
         const bake::BakeResult result = bake_scene(scene, layer_bake());
         std::vector<bake::PlanEntry> plan = result.plan, layers = result.volume_plan;
-        const bake::Rates rates = make_rates();
+        const bake::StageRates rates{};
         const bake::CostPrediction cost = bake::predict_costs(
             {bake::all_effects(), scene, result.facts, result.knobs, rates, 1}, plan, layers);
         for (const bake::StageReport& stage : result.stages) {

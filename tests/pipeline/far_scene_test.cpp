@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bake/example/knot.h"
+#include "bake/example/scene_parts.h"
 #include "bake/example/write_gltf.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"

@@ -160,5 +160,24 @@ TEST(Gloss, BallsUnderAStudioAgreeWithPathTracing) {
     }
 }
 
+// The underside of a metal ball over a wide floor of albedo 0.8 sees nothing but floor, of radiance
+// 0.8 under even light but for the ball's own shadow.
+TEST(Gloss, MetalMirrorsTheFloorBelowIt) {
+    formats::Scene scene = glossy_ball(metal(0.2f), {0.9f, 0.9f, 0.9f});
+    scene.primitives.push_back(tests::make_quad({-60, -4, 60}, {120, 0, 0}, {0, 0, -120}, 24));
+    scene.primitives[1].material = 1;
+    scene.materials.push_back({.name = "Floor", .base_color = {0.8f, 0.8f, 0.8f}});
+    const BakeResult baked = tests::bake_scene(scene, small());
+    const std::vector<formats::Rgb> seen =
+        shade_under(baked.asset, make_environment("white").value(), formats::Vec3{0, -3.5f, 0});
+    int below = 0;
+    for (std::size_t v = 0; v < scene.primitives[0].position.size(); ++v) {
+        if (scene.primitives[0].position[v].y > -0.9f) continue;
+        ++below;
+        EXPECT_NEAR(seen[v].g, 0.9f * 0.8f, 0.09f) << v;
+    }
+    EXPECT_GT(below, 3);
+}
+
 }  // namespace
 }  // namespace opaline::bake

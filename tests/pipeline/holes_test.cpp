@@ -37,6 +37,26 @@ TEST(Holes, OfAMaskLetAllLightPassAndThoseOfABlendTheirShare) {
                 0.03 * bare);
 }
 
+// A white floor and a pane that absorbs nothing, under even light: what the pane keeps off the
+// floor it mirrors back to it.
+TEST(Holes, OfAWindowLetInWhatItsFacesDoNotMirror) {
+    using enum formats::Material::AlphaMode;
+    formats::Scene scene = floor_under_plate(opaque, 1);
+    const double covered = floor_light(scene);
+    scene.materials[0].base_color = scene.materials[1].base_color = {0, 0, 0};
+    scene.materials[0].base_color = {0.2f, 0.2f, 0.2f};
+    const double dark = floor_light(scene);
+    scene.materials[1].sheet = formats::Sheet{.clear = 1};
+    const double glazed = floor_light(scene);
+    scene.primitives.pop_back();
+    const double open = floor_light(scene);
+    EXPECT_GT(covered, 0);
+    EXPECT_LT(dark, 0.7 * open);
+    // 0.83 of even light, 0.92 of what comes straight from above.
+    EXPECT_TRUE(glazed > open - 0.2 * (open - dark) && glazed < open - 0.07 * (open - dark))
+        << dark << " " << glazed << " " << open;
+}
+
 TEST(Holes, AreKeptInTheFileAndChangeNothingForWholeSurfaces) {
     using enum formats::Material::AlphaMode;
     const auto record_of = [](const formats::Scene& scene) {

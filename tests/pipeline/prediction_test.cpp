@@ -7,7 +7,6 @@
 #include "bake/volumes/plan_volumes.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
-#include "tests/support/rates.h"
 #include "tests/support/volumes.h"
 
 namespace opaline::tests {
@@ -20,7 +19,7 @@ void expect_stages_as_predicted(const Scene& scene, const bake::BakeOptions& opt
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     auto plan = bake::plan_bake(scene, facts, knobs);
     const bake::CostPrediction cost =
-        bake::predict_costs(scene, facts, knobs, make_rates(), result.threads, plan);
+        bake::predict_costs(scene, facts, knobs, {}, result.threads, plan);
     std::vector<std::string> predicted, reported;
     for (const bake::StageCost& stage : cost.stages) {
         predicted.push_back(stage.name);
@@ -105,7 +104,7 @@ TEST(Prediction, SecondsAndBytesOfVolumesBelongToTheirDecisions) {
     const bake::Knobs knobs = *bake::resolve_knobs(small_bake());
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     std::vector<bake::PlanEntry> plan, volumes = bake::plan_volumes(scene, knobs).entries;
-    const bake::Rates rates = make_rates();
+    const bake::StageRates rates{};
     const bake::CostPrediction cost =
         bake::predict_costs({bake::all_effects(), scene, facts, knobs, rates, 2}, plan, volumes);
     double seconds = cost.shared_seconds;
@@ -137,7 +136,7 @@ TEST(Prediction, BytesAreThoseOfTheRowsInTheFile) {
     const bake::Knobs knobs = *bake::resolve_knobs(options);
     const bake::SceneFacts facts = bake::inspect_scene(scene);
     auto plan = bake::plan_bake(scene, facts, knobs);
-    bake::predict_costs(scene, facts, knobs, make_rates(), 1, plan);
+    bake::predict_costs(scene, facts, knobs, {}, 1, plan);
     double predicted = 0;
     for (const bake::PlanEntry& entry : plan) {
         predicted += static_cast<double>(entry.predicted_bytes);
@@ -153,7 +152,7 @@ TEST(Prediction, ErrorsByReceiverTakeTheBytesOfTheirSectionAndNoTime) {
     const Scene scene = make_dented_ball();
     const bake::Knobs knobs = *bake::resolve_knobs(small_bake());
     const bake::SceneFacts facts = bake::inspect_scene(scene);
-    const bake::Rates rates = make_rates();
+    const bake::StageRates rates{};
     auto plan = bake::plan_bake(scene, facts, knobs);
     bake::CostRequest request{bake::all_effects(), scene, facts, knobs, rates, 1};
     const bake::CostPrediction without = bake::predict_costs(request, plan);

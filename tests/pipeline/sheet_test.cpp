@@ -179,6 +179,26 @@ TEST(Sheet, OfARefractingMediumIsGlossyAndLosesNothing) {
     EXPECT_TRUE(find_entry(baked.plan, "gloss", 0)->on);
 }
 
+// A sun of irradiance pi at elevation 30 degrees lights a wall from above alone.
+TEST(Sheet, ADoubleSidedOpaqueWallShowsOnEachSideTheLightThatFallsThere) {
+    tests::Scene scene = tests::make_scene({make_leaf()});
+    scene.materials[0].double_sided = true;
+    scene.materials[0].base_color = {0.5f, 0.5f, 0.5f};
+    for (const bool turned : {false, true}) {
+        if (turned) scene.primitives[0] = tests::turned_inside_out(scene.primitives[0]);
+        BakeOptions options = tests::small_bake();
+        options.effects = {"direct"};
+        const BakeResult baked = tests::bake_scene(scene, options);
+        EXPECT_TRUE(find_entry(baked.plan, "direct", 0)->on);
+        for (const Rgb c : seen_from(baked.asset, {0, 3, 0}, "sun:40,30")) {
+            EXPECT_NEAR(c.g, 0.25f, 0.1f) << turned;
+        }
+        for (const Rgb c : seen_from(baked.asset, {0, -3, 0}, "sun:40,30")) {
+            EXPECT_NEAR(c.g, 0, 0.02f) << turned;
+        }
+    }
+}
+
 // What is seen of one from behind is what is seen of it in front, turned inside out: with all that
 // stands before its light.
 TEST(Sheet, SeenFromBehindIsAsTurnedInsideOutSeenInFront) {

@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
@@ -284,6 +285,37 @@ TEST_F(ApiLight, EightThreadsRelightWhileAnotherChangesALight) {
         }
         EXPECT_EQ(wrong, 0) << same;
     }
+}
+
+// A pool that runs its tasks one after the other on the calling thread, the last one first.
+TEST_F(ApiLight, AHostsThreadPoolDoesTheWorkWithTheSameBits) {
+    std::vector<float> map(std::size_t{3} * 256 * 128);
+    for (std::size_t i = 0; i < map.size(); ++i) {
+        map[i] = static_cast<float>(i % 97);
+    }
+    ASSERT_EQ(opaline_light_set_threads(light.get(), 3), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_lat_long(light.get(), map.data(), 256, 128), OPALINE_OK);
+    const std::vector<float> expected = coefficients();
+    struct Pool {
+        std::uint32_t calls = 0, most = 0;
+    } pool;
+    opaline_set_thread_pool(
+        [](void* user, std::uint32_t count, void (*task)(void*, std::uint32_t), void* context) {
+            auto& own = *static_cast<Pool*>(user);
+            ++own.calls;
+            own.most = std::max(own.most, count);
+            for (std::uint32_t i = count; i-- > 0;) {
+                task(context, i);
+            }
+        },
+        &pool);
+    const LightHandle other = new_light();
+    EXPECT_EQ(opaline_light_set_threads(other.get(), 3), OPALINE_OK);
+    EXPECT_EQ(opaline_light_set_lat_long(other.get(), map.data(), 256, 128), OPALINE_OK);
+    opaline_set_thread_pool(nullptr, nullptr);
+    EXPECT_GT(pool.calls, 0u);
+    EXPECT_EQ(pool.most, 3u);
+    EXPECT_EQ(coefficients(other), expected);
 }
 
 }  // namespace

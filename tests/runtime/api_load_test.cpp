@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <map>
 
 #include "formats/opal/asset.h"
@@ -74,6 +77,50 @@ TEST_F(ApiLoad, MemoryOfTheAssetIsTheHostsAndGoesBack) {
     asset.reset();
     EXPECT_TRUE(host.given.empty());
     EXPECT_FALSE(host.wrong);
+}
+
+TEST_F(ApiLoad, AFileIsReadByItsPath) {
+    ASSERT_EQ(load(nullptr), OPALINE_OK);
+    const std::vector<float> expected = shaded();
+    const std::filesystem::path path =
+        std::filesystem::path(testing::TempDir()) / "opaline-load-by-path.opal";
+    std::ofstream(path, std::ios::binary)
+        .write(file.data(), static_cast<std::streamsize>(file.size));
+    auto made = load_asset(path.c_str());
+    std::filesystem::remove(path);  // its bytes are in memory
+    ASSERT_TRUE(made) << opaline_last_error();
+    asset = std::move(made.handle);
+    EXPECT_EQ(shaded(), expected);
+    opaline_asset* out = nullptr;
+    EXPECT_EQ(opaline_asset_load_path(path.c_str(), &out), OPALINE_BAD_FILE);
+    EXPECT_THAT(opaline_last_error(), testing::HasSubstr("No such file"));
+    EXPECT_EQ(opaline_asset_load_path(nullptr, &out), OPALINE_INVALID_ARGUMENT);
+    EXPECT_EQ(out, nullptr);
+}
+
+// Compressed rows come from the host's memory, and shade the same.
+TEST_F(ApiLoad, CompressedRowsAreTheSameAsset) {
+    // Codes that repeat themselves, so that they compress.
+    std::vector<float> expected;
+    formats::Asset repeated = tests::make_asset(8);
+    std::ranges::fill(repeated.transport.code8, static_cast<std::int8_t>(3));
+    for (const auto compression :
+         {formats::Compression::none, formats::Compression::fast, formats::Compression::best}) {
+        file = tests::write(repeated, "api-load-compressed", compression);
+        HostMemory host;
+        const opaline_load_options options = host.options();
+        ASSERT_EQ(load(&options), OPALINE_OK) << opaline_last_error();
+        const auto table = formats::read_section_table(
+            {reinterpret_cast<const std::byte*>(file.data()), file.size}, {});
+        ASSERT_TRUE(table);
+        const auto rows =
+            std::ranges::find(*table, formats::kTranSection, &formats::SectionEntry::id);
+        EXPECT_EQ(rows->stored_size < rows->size, compression != formats::Compression::none);
+        if (expected.empty()) expected = shaded();
+        EXPECT_EQ(shaded(), expected);
+        asset.reset();
+        EXPECT_TRUE(host.given.empty());
+    }
 }
 
 TEST_F(ApiLoad, AHostWithoutMemoryIsToldSoAndKeepsNothing) {

@@ -42,10 +42,12 @@ inline formats::Asset make_asset(std::uint32_t n) {
     return asset;
 }
 
-inline FileBytes write(const formats::Asset& asset, const std::string& name) {
+inline FileBytes write(const formats::Asset& asset, const std::string& name,
+                       formats::Compression compression = formats::Compression::none) {
     const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
     auto file = formats::AtomicFile::create(path);
-    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    EXPECT_TRUE(file && formats::write_opal_bytes(asset.view(), *file, {}, compression) &&
+                file->commit());
     std::ifstream in(path, std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(in), {}};
     std::filesystem::remove(path);

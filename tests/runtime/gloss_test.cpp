@@ -251,8 +251,26 @@ TEST_F(GlossShade, ComponentsAddUpAndOpennessTakesTheSpecularOne) {
         glossy += specular[v].g > 0 ? 1u : 0u;
     }
     EXPECT_GT(glossy, 10u);
+    // Nothing of the sky; metals mirror the surfaces that close them in, whose light is their row.
     const Asset closed = make_glossy_asset(0);
-    EXPECT_EQ(shaded(closed, {.eye = eye_, .specular = &specular_}), diffuse);
+    for (const Rgb c :
+         shaded(closed, {.eye = eye_, .terms = TermSet::specular, .specular = &specular_})) {
+        EXPECT_EQ(c, Rgb{});
+    }
+    const auto enclosed = shaded(closed, {.eye = eye_, .specular = &specular_});
+    const auto rows = shaded(closed, {.eye = eye_});
+    std::size_t mirroring = 0;
+    for (std::uint32_t p = 0; p < closed.primitives.size(); ++p) {
+        const formats::PrimitiveRecord& record = closed.primitives[p];
+        const GlossRecord& gloss = closed.gloss[p];
+        const bool is_metal = gloss.metallic == 1 && gloss.image == formats::kNoImage;
+        for (std::uint32_t v = record.first_vertex; v < record.first_vertex + record.vertex_count;
+             ++v) {
+            EXPECT_EQ(is_metal ? rows[v] : enclosed[v], is_metal ? Rgb{} : rows[v]) << v;
+            mirroring += is_metal && enclosed[v].g > 0 ? 1u : 0u;
+        }
+    }
+    EXPECT_GT(mirroring, 0u);
 }
 
 }  // namespace

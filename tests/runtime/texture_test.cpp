@@ -51,9 +51,27 @@ TEST(Texture, WrapModesFollowTheirDefinition) {
     EXPECT_EQ(at(2.0f, Wrap::mirror), (Rgb{1, 0, 0}));
 }
 
+TEST(Texture, NearestWrapModesGiveTheTexelThatTheCoordinateIsIn) {
+    const auto at = [](float u, Wrap wrap) {
+        return sample_image_linear(kImage, {u, 0.26f}, wrap, Wrap::nearest_clamp);
+    };
+    for (const Wrap wrap : {Wrap::nearest_repeat, Wrap::nearest_clamp, Wrap::nearest_mirror}) {
+        EXPECT_EQ(at(0.01f, wrap), (Rgb{1, 0, 0}));
+        EXPECT_EQ(at(0.49f, wrap), (Rgb{1, 0, 0}));
+        EXPECT_EQ(at(0.51f, wrap), (Rgb{0, 1, 0}));
+        EXPECT_EQ(at(0.99f, wrap), (Rgb{0, 1, 0}));
+    }
+    EXPECT_EQ(at(1.4f, Wrap::nearest_repeat), (Rgb{1, 0, 0}));
+    EXPECT_EQ(at(1.4f, Wrap::nearest_clamp), (Rgb{0, 1, 0}));
+    EXPECT_EQ(at(1.4f, Wrap::nearest_mirror), (Rgb{0, 1, 0}));
+    EXPECT_EQ(at(-0.1f, Wrap::nearest_repeat), (Rgb{0, 1, 0}));
+    EXPECT_EQ(at(-0.1f, Wrap::nearest_clamp), (Rgb{1, 0, 0}));
+}
+
 TEST(Texture, AbsurdCoordinatesGiveAColourOfTheImage) {
     constexpr float kInfinite = std::numeric_limits<float>::infinity();
-    for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror}) {
+    for (const Wrap wrap : {Wrap::repeat, Wrap::clamp, Wrap::mirror, Wrap::nearest_repeat,
+                            Wrap::nearest_clamp, Wrap::nearest_mirror}) {
         for (const float u : {1e30f, -1e30f, 3.4e38f, kInfinite, -kInfinite, NAN, -1e-40f}) {
             const Rgb c = sample_image_linear(kImage, {u, u}, wrap, wrap);
             EXPECT_TRUE(c.r >= 0 && c.r <= 1 && c.g >= 0 && c.g <= 1 && c.b >= 0 && c.b <= 1) << u;

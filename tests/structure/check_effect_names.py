@@ -7,6 +7,9 @@ The effects are the folders of bake/effects/. Elsewhere in bake/, comments and p
   - no string is NAME, a part of it ("single.terms") or a list with it ("multiple,single");
   - no header of the effect's folder is included.
 What stands outside bake/ (the format, the runtime, tests) may name effects.
+
+Effects of volumes, cloud layers and emitters are no folders: each name is a constant (std::string_view kNAME = "...") of a header
+named *_effects.h or plan_*.h in its room. These rooms and the pipeline write the name itself nowhere else.
 """
 
 import re
@@ -18,6 +21,8 @@ from check_rooms import INCLUDE, included_file
 from source_files import source_files
 
 EFFECTS = Path("bake/effects")
+SUBJECT_ROOMS = ["bake/volumes", "bake/layers", "bake/emitters"]
+CONSTANT = re.compile(r'constexpr std::string_view k\w+ = "([^"]+)";')
 TABLE = EFFECTS / "effects.h", EFFECTS / "effects.cpp"
 SHARED = {"formats", "runtime"}  # their words are theirs, whoever uses them
 COMMENT_OR_STRING = re.compile(r"""//[^\n]*|/\*.*?\*/|'(?:\\.|[^'\\\n])'|R"(\w*)\((.*?)\)\1"|"((?:\\.|[^"\\\n])*)\"""", re.DOTALL)
@@ -108,13 +113,24 @@ def faults(root, names):
                 yield f'{file}:{number}: knows of the effect "{name}": {what}'
 
 
+def faults_of_subjects(root):
+    texts = {file: (root / file).read_text() for file in source_files(root, [*SUBJECT_ROOMS, "bake/pipeline"])}
+    homes = {name: file for file, text in texts.items() if re.fullmatch(r"(.*_effects|plan_.*)\.h", file.name)
+             for name in CONSTANT.findall(text)}
+    for file, text in texts.items():
+        for offset, string in split(text)[1]:
+            if homes.get(string, file) != file:
+                number = text.count("\n", 0, offset) + 1
+                yield f'{file}:{number}: writes "{string}", a constant of {homes[string]}'
+
+
 def main():
     root = Path(sys.argv[1])
     names = sorted(path.name for path in (root / EFFECTS).glob("*/"))
     if not names:
         print("SKIPPED: there is no folder in bake/effects")
         return
-    found = list(faults(root, names))
+    found = [*faults(root, names), *faults_of_subjects(root)]
     print("\n".join(found) or f"{len(names)} effects, each known to its folder and to the table alone")
     sys.exit(1 if found else 0)
 

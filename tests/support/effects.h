@@ -32,13 +32,13 @@ inline formats::Result<BakeResult> run_bake(const formats::Scene& scene, const K
 }
 
 inline CostPrediction predict_costs(const formats::Scene& scene, const SceneFacts& facts,
-                                    const Knobs& knobs, const Rates& rates, unsigned threads,
+                                    const Knobs& knobs, const StageRates& rates, unsigned threads,
                                     std::vector<PlanEntry>& plan) {
     return predict_costs({all_effects(), scene, facts, knobs, rates, threads}, plan);
 }
 
 inline void predict_savings(const formats::Scene& scene, const SceneFacts& facts,
-                            const Knobs& knobs, const Rates& rates, unsigned threads,
+                            const Knobs& knobs, const StageRates& rates, unsigned threads,
                             std::vector<PlanEntry>& plan) {
     predict_savings({all_effects(), scene, facts, knobs, rates, threads}, plan);
 }

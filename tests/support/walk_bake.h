@@ -9,7 +9,6 @@
 namespace opaline::bake {
 
 inline constexpr double kDipole = static_cast<double>(MultipleModel::dipole);
-inline constexpr double kScaled = static_cast<double>(MultipleModel::scaled);
 inline constexpr double kWalked = static_cast<double>(MultipleModel::walks);
 
 /// Bakes of light scattered many times by a model, with as many walks as a test affords.

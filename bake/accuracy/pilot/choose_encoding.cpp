@@ -6,7 +6,7 @@
 namespace opaline::bake {
 namespace {
 
-// More coefficients must lower the error by this ratio to be worth their bytes.
+// More coefficients are taken only if they lower the error by this ratio.
 constexpr double kHardlyMore = 1.05;
 
 // A 95 % interval is four of them wide.

@@ -12,7 +12,7 @@
 
 namespace opaline::bake {
 
-/// What a pilot looks at: a bake whose subjects have been studied.
+/// Input of a pilot: a bake whose subjects have been studied.
 struct PilotScene {
     const BakeInputs& bake;
     std::vector<SubjectState>& subjects;  ///< trials prepare them anew
@@ -71,12 +71,12 @@ double find_fixed_floor(const FixedPairs& fixed, std::span<const PilotReceiver> 
 /// One tried value of one knob; the others at their finest or as already chosen.
 struct PilotTrial {
     std::string knob;  ///< as in knobs_json
-    double value = 0;  ///< kAllCoefficients stands for all
+    double value = 0;  ///< kAllCoefficients: all
     double error = 0;  ///< relative RMS
     std::uint32_t code_bits = 16;
 };
 
-/// What a pilot makes of a cube map and the samples there are.
+/// Result of a pilot for a cube map and the present samples.
 struct PilotChoice {
     Knobs knobs;              ///< the cheapest that meet the target; if none do, the cheapest whose
                               ///< error is hardly above that of the finest

@@ -17,7 +17,7 @@ struct Standing {
     bool on_front_total = false;  ///< of total error against time
 };
 
-/// What one way to choose costs: the time against the total error of the points that made it.
+/// Cost of one combination of choices: time against total error of the points with it.
 struct ChoiceLine {
     std::string choices;             ///< PointRecord::choices
     std::vector<std::size_t> front;  ///< indices of points, by rising seconds and falling error

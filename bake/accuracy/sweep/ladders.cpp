@@ -96,7 +96,7 @@ void add_transport_ladders(Points& points, const Knobs& base) {
     points.add("8-bit codes", Ladder::code_bits, 8, base);
 }
 
-// Every way to choose, as accurate as the presets: what each costs, and what it cannot reach.
+// Every choice in three presets: its cost, and the error that it cannot go below.
 void add_choices(Points& points, const LadderRequest& request) {
     for (const KnobSpec* knob : points.subject.knobs) {
         for (std::size_t word = 1; word < knob->words.size(); ++word) {

@@ -26,7 +26,7 @@ struct Ladder {
     static const Ladder exact_rays;    ///< 0: light maps and shared rays, 1: neither
     static const Ladder grid;          ///< N and M together
     static const Ladder diagonal;      ///< all knobs together, step by step
-    /// Of the Monte Carlo reference, which is no bake: no point stands on it.
+    /// Of the Monte Carlo reference, which is no bake and has no points.
     static const Ladder reference_samples;
 };
 inline constexpr Ladder Ladder::preset{"preset"};
@@ -55,7 +55,7 @@ struct Rung {
 /// One setting to bake with. No two points of a list make the same bake: a setting on several
 /// ladders has several rungs, and the truth may be on none.
 struct SweepPoint {
-    std::string label;  ///< "preview", "M = 256": as its first rung says
+    std::string label;  ///< "preview", "M = 256": that of its first rung
     std::vector<Rung> rungs;
     Knobs knobs;
 };
@@ -89,7 +89,7 @@ SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& sce
 /// True if both give the same transport; knobs of effects that are not simulated do not count.
 bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject);
 
-/// What a list of points is made for.
+/// Input of make_ladders and make_truths.
 struct LadderRequest {
     const EffectTable& effects;
     const SweepSubject& subject;

@@ -67,6 +67,9 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
     if (!few) {
         return few.error();
     }
+    if (few->seconds * kStep * (1 + kTruth) > options.most_seconds) {
+        return std::optional<ReferenceLadder>();
+    }
     const auto receivers = choose_receivers(*scene, count_affordable(few->seconds, options.seconds),
                                             options.seed, std::nullopt);
 

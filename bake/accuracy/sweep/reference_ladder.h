@@ -28,16 +28,17 @@ struct ReferenceLadder {
 };
 
 struct ReferenceLadderOptions {
-    double seconds = 10;  ///< about; the first two rungs are climbed whatever they take,
-                          ///< of 16 receivers where there is no time for 256
+    double seconds = 10;        ///< about; the first two rungs are climbed if `most_seconds` allow,
+                                ///< of 16 receivers where there is no time for 256
+    double most_seconds = 1e9;  ///< nothing where the first two rungs are predicted to take more
     std::uint32_t most_samples = 65536;  ///< nor are there more than these, for each receiver
     std::uint64_t seed = 0;
 };
 
 /// Estimates the radiance of vertices along their normals with 4, 16, 64, ... samples; each rung
 /// contains the samples of the one before. The truth has twice as many, independent samples, and
-/// its variance is subtracted. Nothing if no light reaches the receivers. Errors: resource,
-/// interrupted.
+/// its variance is subtracted. Nothing if no light reaches the receivers, or time is short. Errors:
+/// resource, interrupted.
 formats::Result<std::optional<ReferenceLadder>> climb_reference(
     const formats::Scene& scene, const ReferenceLadderOptions& options, const Context& context);
 

@@ -136,7 +136,7 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
     record.cpu_seconds = cpu_after - cpu_before;
     record.groups = group_stages(bake->stages, bake->seconds_total);
     record.stages = bake->stages;
-    record.bytes = formats::opal_size(asset);
+    record.bytes = formats::opal_size(asset, formats::Compression::fast);
     record.peak_bytes = bake->stages.empty() ? 0 : bake->stages.back().peak_rss_bytes;
     record.error = bake->error;
     // Knobs are compared: what a mesh is too coarse for is the same for all of them.

@@ -83,7 +83,7 @@ struct Sweep {
     // machine.
     double scale() const { return predicted > 0 ? measured / predicted : 2.0; }
 
-    // Why a point is not worth starting; empty: it is.
+    // Why a point is skipped; empty: it is not.
     std::string objection(const Prediction& cost, double seconds_left) const {
         if (cost.bytes > options.most_bytes) {
             return "the file would be " + amount(cost.bytes * 1e-9, "GB");
@@ -118,7 +118,7 @@ struct Sweep {
         return &known->second;
     }
 
-    // A point that differs in what was left to be chosen alone, and chose just that.
+    // A point that differs only in automatic choices, and made the same ones.
     PointRecord* find_chosen(const SweepPoint& point) {
         for (const Rung& rung : point.rungs) {
             if (rung.ladder.knob == nullptr || rung.ladder.knob->words.empty()) {
@@ -289,12 +289,21 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     if (has_receivers(scene)) {
         ReferenceLadderOptions climb;
         climb.seconds = kShare * options.seconds;
+        climb.most_seconds = std::max(0.0, 0.5 * sweep.left());
         climb.seed = options.bake.seed;
         auto reference = climb_reference(scene, climb, context);
         if (!reference) {
             return std::move(reference).error();
         }
         result.reference = std::move(*reference);
+        if (!result.reference) {
+            result.skipped.push_back(
+                {{"ladder of the Monte Carlo reference", {}, *draft},
+                 0,
+                 0,
+                 "no light reaches the receivers, or its first rungs would take more than half of "
+                 "the time that was left"});
+        }
         auto paths = trace_for(scene, sweep.view.model,
                                {.seconds = kShare * options.seconds,
                                 .seed = options.bake.seed,

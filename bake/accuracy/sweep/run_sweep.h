@@ -7,7 +7,7 @@
 
 #include "bake/accuracy/sweep/reference_ladder.h"
 #include "bake/accuracy/sweep/run_point.h"
-#include "bake/plan/rates.h"
+#include "bake/plan/stage_rates.h"
 
 namespace opaline::bake {
 
@@ -16,7 +16,7 @@ struct SweepOptions {
     double seconds = 300;       ///< the sweep starts no point that is predicted to end later
     double most_bytes = 4e9;    ///< nor one whose file is predicted to be larger
     std::size_t probes = 2000;  ///< receivers to compare at, at most
-    Rates rates;                ///< of this machine
+    StageRates rates;           ///< of this machine
     std::string light = "sky:3,35";  ///< of the pictures
 };
 
@@ -34,20 +34,20 @@ struct SweepResult {
     std::uint64_t seed = 0;
     double mean_cosine = 0;  ///< of the first medium's phase function
     SweepSubject subject;
-    Quality base = Quality::preview;     ///< what the ladders change one knob of
+    Quality base = Quality::preview;     ///< preset of which the ladders change one knob
     std::vector<PlanEntry> plan;         ///< of the base: of materials
     std::vector<PlanEntry> volume_plan;  ///< and of volumes and layers
     std::vector<PointRecord> points;     ///< in the order in which they were baked
     /// index of the finest point of the choices that most points made (find_finest)
     std::size_t truth = 0;
-    std::optional<ReferenceLadder> reference;  ///< nothing: no light
+    std::optional<ReferenceLadder> reference;  ///< nothing: no light, or no time
     std::vector<SkippedPoint> skipped;
     std::vector<std::string> lights;
     std::string picture_light;
     double seconds = 0;  ///< of the whole sweep
 };
 
-/// What is about to be baked, of how many points at most.
+/// The point about to be baked, and the largest number of points.
 struct SweepStep {
     std::size_t done = 0, total = 0;
     const std::string& label;

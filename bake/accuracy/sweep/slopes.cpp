@@ -6,7 +6,7 @@
 namespace opaline::bake {
 namespace {
 
-// From the fine end, rungs that are hardly closer than the one before: something else is what errs.
+// From the fine end, rungs with hardly less error than the one before: another error dominates.
 std::size_t count_unsaturated(std::span<const Convergence> rungs) {
     constexpr double kLeastGain = 0.9;
     std::size_t count = rungs.size();

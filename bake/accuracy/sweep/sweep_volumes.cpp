@@ -30,7 +30,7 @@ formats::Result<SweepVolumes> make_sweep_volumes(const formats::Scene& scene, do
         return reference.error();
     }
     volumes.probes = choose_volume_probes(*reference, kProbes, seed);
-    // A little first, which says how much the time allows.
+    // A short run first, to find how much the time allows.
     constexpr std::uint64_t kFewEvents = 300000;
     constexpr double kMostTimes = 1000;
     const Clock::time_point start = Clock::now();

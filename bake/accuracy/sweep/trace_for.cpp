@@ -12,7 +12,7 @@ formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
                                                    const TraceForOptions& options,
                                                    const Context& context) {
     constexpr std::uint64_t kFewEvents = 20000, kMostEvents = 300000000;  // for each light
-    constexpr double kMostTimes = 16;  // what few events take says little of many
+    constexpr double kMostTimes = 16;  // the time of few events predicts that of many badly
     ModelCheckOptions wanted;
     wanted.seed = options.seed;
     wanted.simulated = options.simulated;

@@ -11,8 +11,8 @@ struct TraceForOptions {
     double seconds = 15;  ///< about; a least amount is traced whatever it takes
     std::uint64_t seed = 0;
     TermSet simulated = ModelCheckOptions().simulated;  ///< light that the bakes hold
-    bool lit_by_volumes = false;        ///< they hold what volumes scatter to surfaces
-    bool volumes_see_surfaces = false;  ///< and of what surfaces had sent to these
+    bool lit_by_volumes = false;        ///< they hold light that volumes scatter to surfaces
+    bool volumes_see_surfaces = false;  ///< and the part of it that surfaces had sent to these
 };
 
 /// Path tracing that the total error of every bake is measured against: few at first, and

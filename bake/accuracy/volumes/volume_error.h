@@ -25,7 +25,8 @@ struct VolumeErrorReport {
     std::uint64_t samples = 0;  ///< paths traced, of all rays
     std::uint64_t events = 0;   ///< scatterings and surfaces that they met
     std::string reference;      ///< the reference, in words
-    /// Under lights of one LightPlace, relative to the RMS of the truth under these.
+    /// Under lights of one LightPlace, relative to the RMS of the truth under these, or to a tenth
+    /// of that under even light where this is more.
     struct Part {
         std::string name;
         double rms_relative = 0;
@@ -46,7 +47,7 @@ struct VolumeCheckOptions {
     double noise = 0.01;                 ///< relative to the truth: enough for any file
     double noise_share = 0.5;            ///< relative to the difference: enough for this file
     std::uint64_t max_events = 1000000;  ///< scatterings and surfaces met, of all rays
-    bool sees_surfaces = false;          ///< the file holds what surfaces send to volumes
+    bool sees_surfaces = false;          ///< the file holds light that surfaces send to volumes
 };
 
 /// Errors of `luminance` (march_probes) against a truth of the same probes. Under even light what

@@ -117,8 +117,7 @@ float extent_of(std::span<const formats::Volume> volumes) {
 float find_end(const ReferenceScene& reference, glm::vec3 from, glm::vec3 direction) {
     const HitScene& surfaces = reference.surfaces;
     RayOrigin origin{from};
-    constexpr int kMostBacks = 1000;
-    for (int i = 0; i < kMostBacks; ++i) {
+    for (std::uint32_t i = 0; i < kMostSteps; ++i) {
         const auto hit = surfaces.closest_hit(origin, direction, kForever);
         if (!hit) {
             return kForever;
@@ -130,7 +129,7 @@ float find_end(const ReferenceScene& reference, glm::vec3 from, glm::vec3 direct
         if (!is_culled) {
             return glm::dot(hit->position - from, direction);
         }
-        origin = leave_surface(*hit, direction);
+        origin = go_straight_on(origin, leave_surface(*hit, direction));
     }
     return kForever;
 }

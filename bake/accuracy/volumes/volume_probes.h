@@ -11,9 +11,9 @@
 
 namespace opaline::bake {
 
-/// Where light stands as a ray from the eye sees it. A sun stands ahead within 60 degrees of the
-/// ray's direction, behind the eye within 60 degrees of the opposite one, else beside it; even
-/// light comes from all around.
+/// Place of a light relative to a ray from the eye. A sun is ahead within 60 degrees of the ray's
+/// direction, behind the eye within 60 degrees of the opposite one, else beside it; even light
+/// comes from all around.
 enum class LightPlace : std::uint8_t { ahead, beside, behind, around };
 inline constexpr std::size_t kLightPlaces = 4;
 /// In reports: the light is seen from "forward", "side", "back" and as "even".

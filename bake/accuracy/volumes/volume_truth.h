@@ -19,7 +19,7 @@ struct VolumeTruth {
     std::vector<Moments> luminance;
     std::uint32_t samples = 0;  ///< for each ray
     std::uint64_t events = 0;   ///< scatterings and surfaces met, of all paths
-    /// What the rays of LightPlace::around see of the light behind (see_through.h), by probe.
+    /// Transmitted light along the rays of LightPlace::around (see_through.h), by probe.
     std::vector<double> through;
 };
 

@@ -137,6 +137,9 @@ formats::Result<DrawnView> DrawWork::draw(const DrawRequest& request, const Qual
     auto first = draw_side(file, request, camera, quality.supersampling, stop);
     if (!first) return first.error();
     view.file = std::move(*first);
+    const auto exposure = file.shown->choose_exposure(camera_of(state, from));
+    if (!exposure) return exposure.error();
+    view.exposure = *exposure;
     auto second = draw_side(other, request, camera, quality.supersampling, stop);
     if (!second) return second.error();
     view.other = std::move(*second);

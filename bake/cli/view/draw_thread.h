@@ -38,6 +38,7 @@ struct DrawnView {
     std::uint64_t serial = 0;
     bool is_final = false;  ///< in full quality: the samples of `opaline render`
     std::optional<Viewpoint> viewpoint;
+    float exposure = 0;  ///< that the picture of `file` asks for [EV]
     DrawnSide file, other;
     std::optional<formats::Error> error;  ///< then nothing was drawn
 };

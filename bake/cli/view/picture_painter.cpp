@@ -37,9 +37,11 @@ vec3 neutral(vec3 c) {
     float peak = max(c.r, max(c.g, c.b));
     if (peak <= shoulder) return c;
     const float room = 1.0 - shoulder;
-    float new_peak = 1.0 - room * room / (peak + room - shoulder);
+    vec3 compressed = mix(c, 1.0 - room * room / (max(c, shoulder) + room - shoulder),
+                          greaterThan(c, vec3(shoulder)));
+    float new_peak = max(compressed.r, max(compressed.g, compressed.b));
     float keep = 1.0 / (desaturation * (peak - new_peak) + 1.0);
-    return clamp(new_peak + keep * (c / peak * new_peak - new_peak), 0.0, 1.0);
+    return clamp(new_peak + keep * (compressed - new_peak), 0.0, 1.0);
 }
 
 vec3 encode(vec3 c) {

@@ -54,7 +54,7 @@ std::string render_line(const ViewState& state, const std::string& file, const V
         const formats::Rgb c = emitter.color;
         line += " --emitter " + quote_word(emitter.name + "=" + triple(c.r, c.g, c.b));
     }
-    if (state.exposure != 0) line += fmt::format(" --exposure {}", state.exposure);
+    if (state.exposure) line += fmt::format(" --exposure {}", *state.exposure);
     if (state.tone_map == runtime::ToneMap::none) line += " --tone-map none";
     return line + " -o " + quote_word(output);
 }

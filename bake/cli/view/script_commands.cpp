@@ -70,6 +70,9 @@ std::optional<What> parse_rotate_light(Words words) {
 }
 
 std::optional<What> parse_exposure(Words words) {
+    if (words.size() == 1 && words[0] == "auto") {
+        return change([](ViewState& state) { state.exposure.reset(); });
+    }
     const auto to = numbers_in(words, 1, -64, 64);
     if (!to) return {};
     return change([v = *to](ViewState& state) { state.exposure = static_cast<float>(v[0]); });
@@ -213,7 +216,8 @@ constexpr ScriptCommand kCommands[] = {
     {"frame", "", "frame everything again", parse_frame},
     {"light", "ENV", "another light", parse_light},
     {"rotate-light", "DEG", "turn the light to this angle about +Y", parse_rotate_light},
-    {"exposure", "EV", "brighter by a factor of 2^EV", parse_exposure},
+    {"exposure", "EV|auto", "brighter by a factor of 2^EV; auto: as the picture asks for",
+     parse_exposure},
     {"tone-map", "neutral|none", "as `render --tone-map`", parse_tone_map},
     {"terms", "all|LIST", "components to show, as `render --terms`", parse_terms_word},
     {"toggle", "TERM|panels", "show a component, or the controls, or leave them out", parse_toggle},

@@ -6,6 +6,10 @@
 namespace opaline::cli {
 namespace {
 
+bool shows_the_same_files(const ViewState& a, const ViewState& b) {
+    return a.file == b.file && a.other == b.other && a.light == b.light;
+}
+
 bool has_name(std::span<const std::string> names, const std::string& name) {
     return std::ranges::find(names, name) != names.end();
 }
@@ -27,7 +31,9 @@ formats::Error refuse_emitter(const std::string& name, const ScriptRun::Shown& s
 bool ScriptRun::carry_out(const ScriptStep& step, ViewState& state, const Shown& shown) {
     if (const auto* change = std::get_if<StateChange>(&step.what)) {
         if (!state.viewpoint) return false;
+        const ViewState before = state;
         (*change)(state);
+        opens_ = !shows_the_same_files(before, state);
         return true;
     }
     if (const auto* change = std::get_if<EmitterChange>(&step.what)) {
@@ -63,6 +69,8 @@ void ScriptRun::advance(ViewState& state, Shown shown) {
         line_ = 0;
     }
     while (next_ < steps_.size() && !shot_ && !quits_) {
+        if (opens_ && !shown.is_settled) return;
+        opens_ = false;
         const ScriptStep& step = steps_[next_];
         line_ = step.line;
         if (!carry_out(step, state, shown)) return;

@@ -25,7 +25,9 @@ class ScriptRun {
     explicit ScriptRun(std::vector<ScriptStep> steps)
         : steps_(std::move(steps)), is_done_(steps_.empty()) {}
 
-    /// Carries steps out until one waits, takes a picture, fails or ends the session.
+    /// Carries steps out until one waits, takes a picture, fails or ends the session. After another
+    /// file or light the next one waits until it is shown, so that what cannot be shown is the
+    /// fault of its line, the last one's too.
     void advance(ViewState& state, Shown shown);
 
     /// The last step is carried out and shown: until then what fails is the script's fault.
@@ -33,7 +35,8 @@ class ScriptRun {
     bool quits() const { return quits_; }
     /// A step that cannot be carried out.
     const std::optional<formats::Error>& error() const { return error_; }
-    std::size_t line() const { return line_; }  ///< carried out last; 0: the window is the user's
+    /// Carried out last, or waiting for itself; 0: the window is the user's.
+    std::size_t line() const { return line_; }
     /// The picture to take before the next step; none from then on.
     std::optional<Screenshot> take_shot() { return std::exchange(shot_, std::nullopt); }
 
@@ -45,6 +48,7 @@ class ScriptRun {
     std::optional<Screenshot> shot_;
     std::optional<formats::Error> error_;
     bool quits_ = false, is_done_;
+    bool opens_ = false;  ///< another file or light is not shown yet
 };
 
 }  // namespace opaline::cli

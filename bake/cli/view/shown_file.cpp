@@ -15,6 +15,7 @@
 #include "formats/opal/emitters.h"
 #include "runtime/distant_light.h"
 #include "runtime/gl/gl_renderer.h"
+#include "runtime/picture/auto_exposure.h"
 #include "runtime/specular.h"
 #include "runtime/terms.h"
 
@@ -109,6 +110,7 @@ struct ShownFile::Parts {
     std::optional<ViewState> lit_for;
     runtime::MapSampling lit_by = runtime::MapSampling::full;
     runtime::GlRenderOptions drawing;
+    std::optional<float> exposure;  ///< of the light shown
     double error = 0;
 };
 
@@ -271,6 +273,7 @@ formats::Status ShownFile::follow(const ViewState& state, const formats::Environ
     };
     if (parts.renderer && parts.lit_for && is_lit(*parts.lit_for)) return formats::ok_status();
     parts.lit_for.reset();
+    parts.exposure.reset();
     if (auto status =
             state.error_white > 0 ? parts.light_errors() : parts.relight(state, light, sampling);
         !status) {
@@ -295,6 +298,19 @@ formats::Result<runtime::Picture> ShownFile::draw(runtime::Camera camera,
     parts_->seconds.draw = parts_->renderer->stats().draw_seconds;
     parts_->seconds.readback = parts_->renderer->stats().readback_seconds;
     return picture;
+}
+
+formats::Result<float> ShownFile::choose_exposure(runtime::Camera camera) {
+    if (parts_->exposure) return *parts_->exposure;
+    camera.near_plane = runtime::near_plane_for(parts_->whole(), camera.eye);
+    runtime::GlRenderOptions metering = parts_->drawing;
+    metering.supersampling = 1;
+    metering.stop = nullptr;
+    metering.background = metering.background && !parts_->view.clouds.empty();
+    const auto metered = parts_->renderer->render(runtime::meter_camera(camera), metering);
+    if (!metered) return metered.error();
+    parts_->exposure = runtime::choose_exposure(*metered);
+    return *parts_->exposure;
 }
 
 const FileFacts& ShownFile::facts() const {

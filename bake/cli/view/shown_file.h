@@ -65,6 +65,10 @@ class ShownFile {
     formats::Result<runtime::Picture> draw(runtime::Camera camera, std::uint32_t supersampling,
                                            bool is_exact, const std::atomic<bool>& stop);
 
+    /// What the picture asks for [EV], as that camera sees it; the same from then on, until light
+    /// or what is shown changes, so that turning the camera changes no exposure. Errors: resource.
+    formats::Result<float> choose_exposure(runtime::Camera camera);
+
     const FileFacts& facts() const;
     const ViewSeconds& seconds() const;
     /// Of the coefficients that the state leaves, against all: root mean square of the difference

@@ -61,6 +61,7 @@ int run(const ViewCommand& options) {
     const auto steps = read_steps(options.script);
     if (!steps) return report_error(steps.error());
     ViewState state = options.begin;
+    if (auto status = check_light(state.light); !status) return report_error(status.error());
     const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
     if (!terms) return report_error(terms.error());
     state.terms = *terms;

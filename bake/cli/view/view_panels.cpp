@@ -93,10 +93,15 @@ void draw_light(ViewState& state, PanelMemory& memory) {
     ImGui::EndGroup();
 }
 
-void draw_look(ViewState& state) {
-    ImGui::SliderFloat("exposure", &state.exposure, -8, 8, "%.2f EV");
+void draw_look(ViewState& state, float chosen) {
+    float exposure = state.exposure.value_or(chosen);
+    if (ImGui::SliderFloat("exposure", &exposure, -12, 12, "%.2f EV")) state.exposure = exposure;
+    bool is_chosen = !state.exposure;
+    if (ImGui::Checkbox("exposure by the picture", &is_chosen)) {
+        state.exposure = is_chosen ? std::nullopt : std::optional(exposure);
+    }
     bool is_neutral = state.tone_map == runtime::ToneMap::neutral;
-    if (ImGui::Checkbox("tone map (Khronos PBR Neutral)", &is_neutral)) {
+    if (ImGui::Checkbox("tone map", &is_neutral)) {
         state.tone_map = is_neutral ? runtime::ToneMap::neutral : runtime::ToneMap::none;
     }
     ImGui::SliderFloat("angle of view", &state.fov, 5, 120, "%.0f deg");
@@ -272,7 +277,8 @@ PanelWishes draw_panels(ViewState& state, PanelMemory& memory, const DrawnView* 
         wishes.screenshot = ImGui::Button("screenshot");
         constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
         if (ImGui::CollapsingHeader("Light", kOpen)) draw_light(state, memory);
-        if (ImGui::CollapsingHeader("Picture", kOpen)) draw_look(state);
+        if (ImGui::CollapsingHeader("Picture", kOpen))
+            draw_look(state, drawn != nullptr ? drawn->exposure : 0.0f);
         if (drawn != nullptr) {
             const FileFacts& facts = drawn->file.facts;
             if (!facts.emitters.empty() && ImGui::CollapsingHeader("Emitters", kOpen)) {

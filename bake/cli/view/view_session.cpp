@@ -66,6 +66,7 @@ class Session {
     bool wants_exact() const;
     bool is_settled() const;
     void paint_frame();
+    float exposure() const;  // that is shown [EV]
     formats::Status save(const Screenshot& shot);
     int end_with(const formats::Error& error) const;
     std::string next_name() const;
@@ -185,9 +186,11 @@ formats::Status Session::save(const Screenshot& shot) {
     }
     reloads_ = 0;
     if (shot.with_panels) return formats::ok_status();
-    std::string lines = line_of(state_, state_.file, drawn_->file, shot.path);
+    ViewState shown = state_;
+    shown.exposure = exposure();
+    std::string lines = line_of(shown, state_.file, drawn_->file, shot.path);
     if (!state_.other.empty()) {
-        lines += "\n" + line_of(state_, state_.other, drawn_->other, shot.path);
+        lines += "\n" + line_of(shown, state_.other, drawn_->other, shot.path);
     }
     fmt::print("{}\n", lines);
     std::fflush(stdout);
@@ -200,6 +203,10 @@ bool Session::is_idle() const {
     constexpr std::chrono::milliseconds kStill{400};
     return script_.is_done() && is_settled() && !wants_shot_ &&
            SessionClock::now() - last_input_ > kStill;
+}
+
+float Session::exposure() const {
+    return state_.exposure.value_or(drawn_ ? drawn_->exposure : 0.0f);
 }
 
 void Session::paint_frame() {
@@ -216,7 +223,7 @@ void Session::paint_frame() {
     const bool is_light = state_.error_white == 0;
     painter_.paint(
         state_.width, state_.height,
-        {is_light ? state_.exposure : 0.0f, is_light ? state_.tone_map : runtime::ToneMap::none,
+        {is_light ? exposure() : 0.0f, is_light ? state_.tone_map : runtime::ToneMap::none,
          state_.split, state_.difference_gain});
 }
 

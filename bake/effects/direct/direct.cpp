@@ -7,7 +7,9 @@
 
 #include "bake/plan/add_other_light.h"
 #include "bake/plan/walk_work.h"
+#include "bake/receivers/other_side.h"
 #include "bake/scattering/half_space_medium.h"
+#include "bake/scene/coverage.h"
 #include "bake/transport/irradiance_transport.h"
 #include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
@@ -19,10 +21,16 @@ namespace {
 // acts inside media is.
 PlanEntry decide(const PlanInput& input) {
     PlanEntry entry;
-    // Under `white` a diffuse surface reflects at most its albedo.
+    // Under `white` a diffuse surface reflects at most its albedo; a metal mirrors at most that of
+    // what others send, from the part of the sky that they stand before.
     const formats::Rgb c = input.material.base_color;
-    entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex *
-                                      formats::diffuse_share(input.material));
+    const bool is_metal = formats::is_metal(input.material);
+    // What rises above the horizon of a wall's back is not known.
+    const double elevation = input.material.sheet ? 1 : input.subject.horizon.elevation;
+    entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex);
+    entry.bound *= !is_metal ? static_cast<double>(formats::diffuse_share(input.material))
+                             : std::min(1.0, elevation * elevation) *
+                                   input.subject.surroundings.brightest;
     entry.alternative = input.material.medium.has_value();
     if (entry.alternative && (!is_named(input.knobs, "direct") || input.knobs.looks_inside_media)) {
         entry.bound = 0;
@@ -30,13 +38,13 @@ PlanEntry decide(const PlanInput& input) {
     } else if (!is_wanted(input.knobs, "direct")) {
         entry.reason = "left out by --effects";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
-        entry.reason = formats::diffuse_share(input.material) > 0
-                           ? "the base colour is black, or nearly: nothing is reflected"
-                           : "a metal reflects nothing diffusely";
+        entry.reason = is_metal ? "a metal reflects nothing diffusely"
+                                : "the base colour is black, or nearly: nothing is reflected";
     } else {
         entry.reason = entry.alternative
                            ? "the medium is shown as a diffuse surface of the same reflectance"
-                           : "the surface reflects diffusely";
+                       : is_metal ? "the metal mirrors what other surfaces send to it"
+                                  : "the surface reflects diffusely";
     }
     entry.as_surface = entry.on && entry.alternative;
     return entry;
@@ -50,7 +58,9 @@ void lay_out(const PlanEntry& entry, RowLayout& layout) {
 }
 
 constexpr std::array<DecisionRule, 1> kRules{
-    {{"direct", [](const PlanInput& input) { return !is_thin_walled(input); }, decide, lay_out}}};
+    {{"direct",
+      [](const PlanInput& input) { return !is_thin_walled(input) || is_wall(input.material); },
+      decide, lay_out}}};
 
 // The reflectance of the medium that is shown as a surface.
 struct Albedo : Prepared {
@@ -75,9 +85,13 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     return directions;
 }
 
-// T = V max(0, n.w) / pi: albedo 1.
+bool is_of_metal(const EffectInputs& inputs) {
+    return formats::is_metal(inputs.bake.scene.materials[inputs.material]);
+}
+
+// T = V max(0, n.w) / pi: albedo 1. `term`: 0, or 1 of the other side of a wall.
 std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiver,
-                              const DenseRow& row) {
+                              std::uint32_t term, const DenseRow& row) {
     const auto& directions = static_cast<const Directions&>(*inputs.own.prepared).set;
     std::vector<float> dense(row.size());
     const std::uint64_t rays = gather_irradiance(inputs.outside(), directions, receiver, dense);
@@ -86,7 +100,7 @@ std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiv
     }
     formats::haar_forward_cube(std::span<float>(dense), row.cubemap_size);
     for (std::uint32_t band = 0; band < row.bands; ++band) {
-        const std::span<float> to = row.plane(0, band);
+        const std::span<float> to = row.plane(term, band);
         for (std::size_t k = 0; k < dense.size(); ++k) {
             to[k] += dense[k];
         }
@@ -94,14 +108,27 @@ std::uint64_t add_environment(const EffectInputs& inputs, const Receiver& receiv
     return rays;
 }
 
-std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+std::uint64_t add_side(const EffectInputs& inputs, const Receiver& receiver, std::uint32_t term,
+                       const DenseRow& row) {
     constexpr float kShare = std::numbers::inv_pi_v<float>;
     std::uint64_t rays = 0;
-    if (inputs.bake.has_environment()) {
-        rays += add_environment(inputs, receiver.outside, row);
+    if (inputs.bake.has_environment() && !is_of_metal(inputs)) {
+        rays += add_environment(inputs, receiver, term, row);
     }
     return rays +
-           add_other_light(inputs.light(), receiver.outside, {{0, {kShare, kShare, kShare}}}, row);
+           add_other_light(inputs.light(), receiver, {{term, {kShare, kShare, kShare}}}, row);
+}
+
+bool has_two_sides(const EffectInputs& inputs) {
+    return inputs.bake.scene.materials[inputs.material].sheet.has_value();
+}
+
+std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+    std::uint64_t rays = add_side(inputs, receiver.outside, 0, row);
+    if (has_two_sides(inputs)) {
+        rays += add_side(inputs, other_side(receiver.outside, receiver.inside), 1, row);
+    }
+    return rays;
 }
 
 struct Truth : Prepared {
@@ -119,8 +146,15 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const 
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& own = static_cast<const Truth&>(prepared);
-    TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, receiver.outside, rays);
-    rays += add_true_other_light(own.other, receiver.outside, receiver.key, 1, seen);
+    const bool is_behind = has_two_sides(inputs) && receiver.behind;
+    const Receiver at =
+        is_behind ? other_side(receiver.outside, receiver.inside) : receiver.outside;
+    TwoEstimates seen = eval_reflection(own.truth, inputs.bake.rays, at, rays);
+    if (is_of_metal(inputs)) {
+        std::ranges::fill(seen.first, 0.0);
+        std::ranges::fill(seen.second, 0.0);
+    }
+    rays += add_true_other_light(own.other, at, receiver.key, 1, seen);
     return seen;
 }
 
@@ -136,12 +170,13 @@ EffectDescriptor describe_direct(Effect id) {
                   .applies = [](const formats::Material& material,
                                 const RowLayout&) { return material.medium.has_value(); },
                   .run = study,
-                  .work = [](const SubjectCost& c) { return walk_work(c.input, c.medium()); }},
+                  .work = [](const SubjectCost& c) { return walk_work(c.medium()); }},
         .prepare = {.run = prepare},
         .gather = {.add = add,
                    .work =
                        [](const SubjectCost& c) {
-                           return irradiance_work(c.input, c.receivers, c.layout.occluded);
+                           const double sides = c.layout.sheet ? 2 : 1;
+                           return irradiance_work(c.input, sides * c.receivers, c.layout.occluded);
                        }},
         .truth = {.reference = "rays to the suns, and to all else four a texel of 6 x 64 x 64",
                   .make = make_truth,

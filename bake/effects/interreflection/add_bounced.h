@@ -8,8 +8,8 @@
 
 namespace opaline::bake {
 
-/// Adds irradiance at a point, Haar rows as of OtherLight::add: that of the sites around, or by
-/// final gathering where these say too little. Returns the rays traced, 0 of the former.
+/// Adds irradiance at a point, Haar rows as of OtherLight::add: interpolated from the sites around,
+/// or by final gathering where these are too few. Returns the rays traced, 0 if interpolated.
 std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
                           std::uint32_t cubemap_size, std::span<float> rows);
 

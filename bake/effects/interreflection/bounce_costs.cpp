@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <vector>
 
-#include "bake/calibration/bench/calibration_bench.h"
-#include "bake/calibration/bench/stopwatch.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
@@ -14,12 +12,14 @@
 namespace opaline::bake {
 namespace {
 
+constexpr CostBySize kBounceRay{2.1e-7, 3.9e-7};  // to the nearest surface, and its cluster
+constexpr double kBounceCell = 2.3e-10;           // one number of a cluster into a receiver's row
 // Rays that meet something, and clusters that they meet: statues on floors. An open scene has
 // fewer.
 constexpr double kHitShare = 0.44, kClustersPerHit = 4;
 constexpr double kBounces = 6;
-// Receivers that trace rays of their own where there are sites, sites that the others read, and
-// sites at receivers of which the first say too little: of the statue on its floor.
+// Shares measured on the statue on its floor: receivers that trace rays of their own where there
+// are sites, sites that a receiver reads, and sites added where the first level is too sparse.
 constexpr double kOwnShare = 0.26, kSitesRead = 20, kAddedShare = 0.16;
 
 double count_sites(double receivers) {
@@ -34,16 +34,16 @@ double row_cells(std::uint32_t bands) {
 }
 
 double ray_work(const CostInput& input, double rays, double bands) {
-    return rays * (input.rates.bounce_ray.at(input.triangles) +
+    return rays * (kBounceRay.at(input.triangles) +
                    kHitShare * kClustersPerHit * row_cells(static_cast<std::uint32_t>(bands)) *
-                       input.rates.bounce_cell);
+                       kBounceCell);
 }
 
 }  // namespace
 
 Work bounce_rows_work(const SubjectCost& cost) {
     const double sides = cost.layout.sheet ? 2 : 1;
-    // The light of a medium arrives at its samples, which stand for the receivers here.
+    // The light of a medium arrives at its samples instead of its receivers.
     const double rays = cost.layout.translucent && !cost.layout.at_entry
                             ? kRaysOfAveraged
                             : count_bounce_rays(cost.input.knobs[kBounceRays]);
@@ -55,7 +55,7 @@ Work bounce_rows_work(const SubjectCost& cost) {
         own -= read;
     }
     return {0, ray_work(cost.input, own * rays, bands) +
-                   read * kSitesRead * row_cells(bands) * cost.input.rates.bounce_cell};
+                   read * kSitesRead * row_cells(bands) * kBounceCell};
 }
 
 LightWork bounce_light_work(const CostInput& input) {
@@ -64,7 +64,7 @@ LightWork bounce_light_work(const CostInput& input) {
     work.cubemap_size = kBounceCubemap;
     work.points = scatterers;
     const double texel_rays = count_rays(kBounceCubemap);
-    work.work.shared += scatterers * texel_rays * input.rates.coherent_ray.at(input.triangles);
+    work.work.shared += scatterers * texel_rays * kCoherentRay.at(input.triangles);
     work.work.shared += ray_work(input, scatterers * kRaysOfScatterer, 3);
     // Rows of nodes; of scatterers without bounces and with them, which the system keeps though
     // they go; nodes that rays of scatterers meet.
@@ -75,44 +75,9 @@ LightWork bounce_light_work(const CostInput& input) {
     work.bytes += sites * row;
     work.work.shared +=
         ray_work(input, sites * count_rays_of_site(count_bounce_rays(input.knobs[kBounceRays])), 3);
-    work.work.shared += (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare * row_cells(3) *
-                        input.rates.bounce_cell;
+    work.work.shared +=
+        (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare * row_cells(3) * kBounceCell;
     return work;
-}
-
-void calibrate_bounces(const CalibrationBench& bench, Rates& rates) {
-    const BounceGrid grid = make_bounce_grid(144);
-    std::vector<Scatterer> scatterers;
-    for (const BodyPoint& point : thinned(std::span<const BodyPoint>(bench.points), 2048)) {
-        Scatterer s;
-        s.position = point.position;
-        s.normal = point.normal;
-        s.material = point.material;
-        scatterers.push_back(s);
-    }
-    BounceTree tree(scatterers, bench.scene.materials.size(),
-                    3 * formats::cubemap_texels(kBounceCubemap));
-    const auto receivers = thinned(std::span<const Receiver>(bench.receivers), 64);
-    std::vector<std::vector<NodeWeight>> weights(receivers.size());
-    std::uint64_t rays = 0;
-    Stopwatch watch;
-    for (std::size_t i = 0; i < receivers.size(); ++i) {
-        rays +=
-            weigh_bounces(bench.scene, bench.rays, tree, receivers[i], grid, 0, weights[i]).rays;
-    }
-    bench.side_of(rates.bounce_ray) = watch.seconds() / static_cast<double>(rays);
-    if (!bench.is_many) {
-        return;
-    }
-    std::vector<float> row(tree.row_size());
-    std::size_t clusters = 0;
-    watch.restart();
-    for (const std::vector<NodeWeight>& own : weights) {
-        add_node_rows(tree, own, row);
-        clusters += own.size();
-    }
-    rates.bounce_cell = watch.seconds() / (static_cast<double>(std::max<std::size_t>(1, clusters)) *
-                                           static_cast<double>(row.size()));
 }
 
 }  // namespace opaline::bake

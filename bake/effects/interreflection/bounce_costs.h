@@ -10,7 +10,4 @@ Work bounce_rows_work(const SubjectCost& cost);
 /// Of scatterers and their light, media left out.
 LightWork bounce_light_work(const CostInput& input);
 
-/// Measures Rates::bounce_ray and bounce_cell.
-void calibrate_bounces(const CalibrationBench& bench, Rates& rates);
-
 }  // namespace opaline::bake

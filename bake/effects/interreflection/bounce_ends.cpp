@@ -22,7 +22,7 @@ BounceEnd end_of(const formats::Scene& scene, const PacketHits& hits, std::size_
             .is_met = true};
 }
 
-// How light changes from one end to the other, as far as shapes tell.
+// How much the light may change from one end to the other, judged by shape alone.
 enum class Change : std::uint8_t { none, other_surface, nothing };
 
 Change change_between(const BounceEnd& a, const BounceEnd& b) {
@@ -75,9 +75,9 @@ void append_thinned(std::span<const std::uint32_t> some, std::size_t most,
     }
 }
 
-// Cells to cut: those at edges of everything that is seen first. Cells whose row and column add up
-// to an even number, and the others, have lists of their own, so that the cell's own ray has no say
-// in how much a list is thinned either: the four beside it are of the other kind.
+// Cells to cut: first those at silhouettes. Cells with an even sum of row and column have one list,
+// cells with an odd sum another. The four neighbours of a cell are in the other list, so the cell's
+// own ray does not influence how much its list is thinned, which keeps the estimate unbiased.
 std::vector<std::uint32_t> choose_cells(std::span<const BounceEnd> ends, const BounceGrid& grid) {
     std::array<std::vector<std::uint32_t>, 2> outlines, inner;
     for (std::uint32_t row = 0; row < grid.side; ++row) {

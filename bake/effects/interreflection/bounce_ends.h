@@ -14,7 +14,7 @@ struct BounceEnd {
     glm::vec3 direction{0};      ///< unit
     float distance = 0;          ///< [m]
     float error = 0;             ///< bound [m] on that of where it ends
-    std::uint32_t material = 0;  ///< and side: of what is met
+    std::uint32_t material = 0;  ///< and side: of the surface that is met
     SeenSide side;
     bool is_met = false, is_quarter = false;
     std::uint32_t cell = 0;  ///< of BounceGrid::cells, or quarters
@@ -22,10 +22,10 @@ struct BounceEnd {
     bool sends() const { return is_met && side.is_seen; }
 };
 
-/// Rays of a point, one a cell. Cells whose neighbours see different things have one in each
-/// quarter instead, as many as the grid has rays for. A cell's own ray has no say in whether it is
-/// cut and stays one of the four, so that no light is lost or found: a ray that meets a thin thing
-/// is rare, and counts in full. Overwrites `ends`; the first are those of cells, row by row.
+/// Rays of a point, one a cell. Cells whose neighbours see different surfaces have one ray in each
+/// quarter instead, as many as the grid has rays for. A cell's own ray does not influence whether
+/// the cell is cut, and stays one of the four, so the estimate is unbiased: a ray that meets a thin
+/// object is rare and counts in full. Overwrites `ends`; the first are those of cells, row by row.
 /// Returns the rays.
 std::uint64_t find_bounce_ends(const formats::Scene& scene, const RayScene& rays,
                                const Receiver& at, const BounceGrid& grid, std::uint64_t seed,

@@ -75,7 +75,7 @@ FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const Bounc
     glm::vec3 toward = frame.to_world(cell.middle);
     float cosine = -glm::dot(toward, side.normal);
     float t = end.distance * side.cosine / std::max(cosine, kGrazing);
-    // Beyond twice as far the plane says nothing about the surface.
+    // Beyond twice the distance the plane no longer approximates the surface.
     if (!(cosine > kGrazing && t < 2 * end.distance)) {
         toward = end.direction;
         cosine = std::max(side.cosine, kGrazing);

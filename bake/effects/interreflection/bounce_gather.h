@@ -17,13 +17,13 @@ struct NodeWeight {
     float weight = 0;
 };
 
-/// What rays of a point tell besides.
+/// Further results of a point's rays.
 struct BounceGather {
     std::uint64_t rays = 0;
     float nearness = 0;  ///< [1/m^2], mean of 1 / length^2; 0 of rays that meet nothing
 };
 
-/// Which rows answer a ray, for measurements of what each gains.
+/// Which rows answer a ray. Benchmarks compare them.
 enum class LookUp : std::uint8_t {
     kernel,   ///< nodes under a Gaussian over the footprint of the ray's cell
     node,     ///< the node as large as the footprint, toward the ray's end

@@ -12,10 +12,10 @@
 
 namespace opaline::bake {
 
-/// Rays of a scatterer to others, and of a point whose light is averaged.
+/// Rays of a scatterer to other scatterers, and of a point whose light is averaged.
 inline constexpr std::uint32_t kRaysOfScatterer = 64, kRaysOfAveraged = 16;
-/// Sites among receivers, at most, before some are added where these say too little; where there
-/// are fewer receivers than that, rays of their own cost less than sites.
+/// Largest number of sites among receivers before more are added where they are too sparse. With
+/// fewer receivers than that, rays of their own cost less than sites.
 inline constexpr std::size_t kMostSites = 16384, kFewestWithSites = 4096;
 /// Rays of a site where a receiver without sites has `of_receiver`.
 std::uint32_t count_rays_of_site(std::uint32_t of_receiver);

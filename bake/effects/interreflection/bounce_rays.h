@@ -53,8 +53,8 @@ struct BounceGrid {
 };
 /// `count`: of count_bounce_rays.
 BounceGrid make_bounce_grid(std::uint32_t count);
-/// Fewer cells than that, some two thirds, and quarters of them for the rays that are left. Cells
-/// of less than 256 rays are too wide to tell each other where edges are: these are not cut.
+/// Fewer cells than that, some two thirds, and quarters of them for the remaining rays. Below 256
+/// rays cells are too wide to locate edges, and none is cut.
 BounceGrid make_cut_grid(std::uint32_t count);
 
 /// The direction of two numbers in [0, 1], cosine-distributed if these are random: unit, the normal

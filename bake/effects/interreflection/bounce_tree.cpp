@@ -14,6 +14,9 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::uint32_t kMostNodes = (1u << 29) - 1;
+// Below it a tree only halves its members: they are fewer than 2^29.
+constexpr std::uint32_t kMostMiddles = 400;
+static_assert(kMostMiddles + 29 < BounceTree::kMostWaiting);
 constexpr std::size_t kSkyTexels = std::size_t{6} * kBounceCubemap * kBounceCubemap;
 
 // Area of a facet's part in a box: that of its shadow along the nearest axis over the cosine.
@@ -33,9 +36,10 @@ float largest_side(glm::vec3 extent) {
 
 // Orders members along an axis; returns how many go below the split: half of them. Where most lie
 // in a slab, as those of one of several parallel walls do, a split between these would part them by
-// rounding errors: the middle of all parts walls instead.
+// rounding errors: the middle of all parts walls instead, in the first levels of the tree. Both
+// parts have members: places are on both sides of the middle, or else all alike.
 std::size_t split_members(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
-                          glm::length_t axis) {
+                          glm::length_t axis, std::uint32_t depth) {
     constexpr float kSlab = 0.01f;
     const auto place = [&](std::uint32_t i) { return scatterers[i].position[axis]; };
     std::ranges::sort(members, [&](std::uint32_t a, std::uint32_t b) {
@@ -44,10 +48,11 @@ std::size_t split_members(std::span<const Scatterer> scatterers, std::span<std::
     const std::size_t n = members.size();
     const float low = place(members[0]), high = place(members[n - 1]);
     const float slab = place(members[3 * n / 5]) - place(members[2 * n / 5]);
-    if (n < 5 || slab > kSlab * (high - low) || !(high > low)) {
+    if (n < 5 || slab > kSlab * (high - low) || !(high > low) || depth >= kMostMiddles) {
         return n / 2;
     }
-    const float middle = 0.5f * (low + high);
+    // Of neighbouring floats the middle rounds to either.
+    const float middle = std::min(0.5f * (low + high), std::nextafter(high, low));
     return static_cast<std::size_t>(
         std::ranges::partition_point(members, [&](std::uint32_t i) { return place(i) <= middle; }) -
         members.begin());
@@ -72,7 +77,7 @@ BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materi
                 all.low = glm::min(all.low, scatterers[i].position);
                 all.high = glm::max(all.high, scatterers[i].position);
             }
-            build(scatterers, members[group], all);
+            build(scatterers, members[group], all, 0);
         }
     }
     rows_ = CodedRows(nodes_.size(), row_size_);
@@ -105,7 +110,7 @@ std::uint32_t BounceTree::sky_node(glm::vec3 direction) const {
 }
 
 float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
-                        const Box& cell) {
+                        const Box& cell, std::uint32_t depth) {
     const std::size_t self = nodes_.size();
     nodes_.push_back({});
     extents_.push_back({.scatterer = members[0]});
@@ -134,7 +139,7 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
     const glm::length_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0
                                : extent.y >= extent.z                       ? 1
                                                                             : 2;
-    const std::size_t half = split_members(scatterers, members, axis);
+    const std::size_t half = split_members(scatterers, members, axis, depth);
     const auto last_below = std::ranges::max(
         members.first(half), {}, [&](std::uint32_t i) { return scatterers[i].position[axis]; });
     const auto first_above = std::ranges::min(
@@ -154,9 +159,9 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
     }
     Box right = left;
     left.high[axis] = right.low[axis] = nodes_[self].split;
-    float area = build(scatterers, members.first(half), left);
+    float area = build(scatterers, members.first(half), left, depth + 1);
     nodes_[self].right = static_cast<std::uint32_t>(nodes_.size()) & kMostNodes;
-    area += build(scatterers, members.subspan(half), right);
+    area += build(scatterers, members.subspan(half), right, depth + 1);
     return nodes_[self].cell = area;
 }
 

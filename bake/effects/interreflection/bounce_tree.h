@@ -50,6 +50,9 @@ inline float similarity(Brightness a, Brightness b) {
 /// Where rows are cube maps, texels of the sky have nodes as well, which no search finds.
 class BounceTree {
   public:
+    /// Nodes that a search sets aside: at most as many as a tree is deep.
+    static constexpr std::size_t kMostWaiting = 512;
+
     /// `materials`: of the scene. Rows of `row_size` floats are 0 until set_rows.
     BounceTree(std::span<const Scatterer> scatterers, std::size_t materials, std::size_t row_size);
 
@@ -103,7 +106,7 @@ class BounceTree {
         glm::vec3 low, high;
     };
     float build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
-                const Box& cell);
+                const Box& cell, std::uint32_t depth);
     std::uint32_t root_of(const SurfaceSide& side) const;
     // Appends rows of the sky, in the order of its texels.
     void set_sky();
@@ -132,9 +135,7 @@ void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& sid
     const glm::vec3 high = kernel.centre + kReach * kernel.extent;
     const glm::vec3 slope{glm::length(kernel.across), glm::length(kernel.along),
                           glm::length(kernel.above)};
-    // At most as many as the tree is deep: twenty halvings, between which a few parts of an axis
-    // without half of the scatterers go.
-    std::array<std::uint32_t, 512> waiting;
+    std::array<std::uint32_t, kMostWaiting> waiting;
     waiting[0] = root;
     std::size_t count = 1;
     while (count > 0) {

@@ -49,7 +49,7 @@ void EvenReturn::add(glm::vec3 position, float arriving, const BandColour& leavi
 }
 
 BandColour EvenReturn::share(glm::vec3 position) const {
-    constexpr double kOfAll = 4;  // points of mean light that count beside those near
+    constexpr double kOfAll = 4;  // weight of the mean over all points, in points
     Flux sum;
     if (count_ > 0) {
         sum.add(all_, kOfAll / count_);

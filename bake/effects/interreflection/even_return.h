@@ -9,10 +9,10 @@
 
 namespace opaline::bake {
 
-/// Of even light that reaches a body, the share that it scatters back around a point, band by band:
-/// of the light that arrives under an even sky at points all over its surface, as far as some
-/// transport mean free paths from there, the share that leaves at these. At one point alone it is
-/// no measure: what leaves at the bottom of a fold arrived beside it.
+/// Share of even light that a body scatters back around a point, band by band: light that leaves
+/// over light that arrives, both summed over points of the surface within some transport mean free
+/// paths. A single point does not suffice: light that leaves at the bottom of a fold arrived beside
+/// it.
 class EvenReturn {
   public:
     explicit EvenReturn(const formats::Medium& medium);

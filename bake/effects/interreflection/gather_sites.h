@@ -13,14 +13,13 @@ namespace opaline::bake {
 struct GatherSite {
     Receiver at;
     /// [m], (mean of 1 / t^2)^-1/2 over cosine-distributed rays of lengths t; infinite where none
-    /// ended. What a linear function errs by at a distance r goes with the second derivative of
-    /// irradiance, so with (r / clearance)^2, as what is near fills it [Ward1992].
+    /// ended. The error of a linear fit at a distance r grows with the second derivative of the
+    /// irradiance, so with (r / clearance)^2, because near surfaces dominate it [Ward1992].
     float clearance = 0;
 };
 
-/// The irradiance between points where it is known: a linear fit to those around
-/// (`fit_near_sites`). So light needs rays only as densely as it changes, and the noise of sites
-/// averages out.
+/// The irradiance between sites: a linear fit to the sites around (`fit_near_sites`). Rays are
+/// needed only as densely as the light changes, and the noise of sites averages out.
 class GatherSites {
   public:
     GatherSites();
@@ -29,10 +28,9 @@ class GatherSites {
     GatherSites& operator=(GatherSites&&) noexcept;
     ~GatherSites();
 
-    /// Weights of the sites near a point, of sum 1. False, and none, where these say too little of
-    /// it: they are few, because others face another way or are no nearer than other surfaces;
-    /// or the fit would have more than `most_noise` of the variance of a site. Overwrites
-    /// `weights`.
+    /// Weights of the sites near a point, of sum 1. False, and none, where these are too few,
+    /// because others face another way or are no nearer than other surfaces, or where the variance
+    /// of the fit would exceed `most_noise` times that of a site. Overwrites `weights`.
     bool weigh(const Receiver& at, float most_noise, std::vector<SiteWeight>& weights) const;
 
   private:

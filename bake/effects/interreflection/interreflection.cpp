@@ -72,8 +72,7 @@ EffectDescriptor describe_interreflection(Effect id) {
             .gather = {.work = bounce_rows_work},
             .make_light = make_light,
             .light_work = bounce_light_work,
-            .held_light = formats::TermSet::interreflection,
-            .calibrate = calibrate_bounces};
+            .held_light = formats::TermSet::interreflection};
 }
 
 }  // namespace opaline::bake

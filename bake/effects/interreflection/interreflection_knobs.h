@@ -43,7 +43,6 @@ inline constexpr KnobSpec kBounceRays{
     .theory = {.label = "rays to other surfaces",
                .words = "independent rays; stratified ones do better",
                .rate = -0.5},
-    .matters = bounce_knobs::bounces,
-    .why_idle = "no light goes from surface to surface"};
+    .matters = bounce_knobs::bounces};
 
 }  // namespace opaline::bake

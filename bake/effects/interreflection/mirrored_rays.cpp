@@ -33,11 +33,11 @@ LobeSample sample_lobe(const formats::Medium& medium, const glm::dvec3& to_eye, 
     const auto roughness = static_cast<double>(medium.roughness);
     const double alpha = roughness * roughness;
     const bool is_smooth = alpha < 1e-6;
-    const glm::dvec3 m =
-        is_smooth ? glm::dvec3(0, 0, 1)
-                  : sample_visible_normal(to_eye, {alpha, alpha}, DiskMap::concentric,
-                                          static_cast<double>(u), static_cast<double>(v))
-                        .m;
+    const glm::dvec3 m = is_smooth
+                             ? glm::dvec3(0, 0, 1)
+                             : sample_visible_normal(to_eye, {alpha, alpha}, DiskMap::concentric,
+                                                     static_cast<double>(u), static_cast<double>(v))
+                                   .m;
     const double cosine = std::clamp(glm::dot(to_eye, m), 0.0, 1.0);
     const glm::dvec3 onward = 2 * cosine * m - to_eye;
     if (!(onward.z > 0)) {
@@ -73,7 +73,7 @@ MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
 std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                               const BounceTree& tree, std::vector<MirroredRay> open,
                               std::vector<MirroredNode>& found) {
-    // Boundaries that face each other mirror a few hundredths of what they were sent, but for
+    // Boundaries that face each other mirror a few hundredths of the arriving light, except at
     // grazing angles.
     constexpr int kMostMirrors = 4;
     constexpr std::size_t kLanes = RayPacket::kSize;

@@ -28,7 +28,7 @@ struct MirroredRay {
 
 /// By the Fresnel reflectance of its angle, about the facet's normal; of a rough boundary about one
 /// of the normals that the ray sees, GGX [Heitz2018], drawn by the ray's place and direction.
-/// Materials other than media mirror nothing here: what they do is in their radiosity
+/// Materials other than media mirror nothing here: their mirrored light is part of their radiosity
 /// (eval_surface_albedo).
 MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
                    std::uint32_t number);
@@ -40,8 +40,8 @@ struct MirroredNode {
     std::uint32_t number = 0;
 };
 
-/// Follows mirrored rays from medium to medium until little is left of them, and appends what they
-/// meet to `found`. Returns the rays traced.
+/// Follows mirrored rays from medium to medium until they carry little light, and appends their
+/// hits to `found`. Returns the rays traced.
 std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                               const BounceTree& tree, std::vector<MirroredRay> open,
                               std::vector<MirroredNode>& found);

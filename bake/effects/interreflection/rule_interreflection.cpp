@@ -12,7 +12,12 @@ PlanEntry decide_interreflection(const PlanInput& input) {
     const double above =
         horizon.elevation * horizon.elevation + (input.material.medium ? horizon.behind_facets : 0);
     const double covered = input.material.sheet ? 1 : std::min(1.0, above);
-    entry.bound = input.subject.brightest * covered * others.brightest;
+    const formats::Rgb c = input.material.base_color;
+    const double sent =
+        formats::is_metal(input.material)
+            ? static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex)
+            : input.subject.brightest;
+    entry.bound = sent * covered * others.brightest;
     entry.has_bands = !others.is_grey;
     const bool has_rows = std::any_of(input.earlier.begin(), input.earlier.end(),
                                       [](const PlanEntry& e) { return e.on && e.rule == 0; });

@@ -72,7 +72,7 @@ Scatterer make_scatterer(const LightInputs& inputs, const Seen& seen) {
     return made;
 }
 
-// Over the part of the surface that each scatterer stands for.
+// Over the part of the surface that each scatterer represents.
 void filter_albedo(const LightInputs& inputs, std::span<const Seen> all,
                    std::span<const std::uint32_t> chosen, std::span<Scatterer> scatterers) {
     const formats::Scene& scene = inputs.bake.scene;

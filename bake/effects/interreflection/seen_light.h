@@ -16,16 +16,16 @@ struct SeenNode {
     float share = 1;         ///< of the view's light: less of what boundaries of media mirror
 };
 
-/// The node of each view's surface that is as large as what the view stands for, by nodes. Views
-/// that meet no surface that sends light have none; those that meet a medium have others besides,
-/// for what its boundary mirrors. `traced` counts up.
+/// For each view the node of its surface that is as large as the view's footprint, by nodes. Views
+/// that meet no radiating surface have none. Views that meet a medium have more, for the light
+/// that its boundary mirrors. `traced` counts up.
 std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& rays,
                                 const BounceTree& tree, std::span<const SurfaceView> views,
                                 double solid_angle, std::uint64_t& traced);
 
-/// Adds what views see of other surfaces, as of OtherLight::add_seen: radiosity over pi of the
-/// clusters as large as what each view stands for. Their light counts as the same in all
-/// directions. Returns the rays traced.
+/// Adds the radiance that views see of other surfaces, as OtherLight::add_seen: radiosity over pi
+/// of the clusters as large as each view's footprint, the same in all directions. Returns the rays
+/// traced.
 std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceView> views,
                              double solid_angle, std::uint32_t cubemap_size, std::uint32_t bands,
                              std::span<float> rows);

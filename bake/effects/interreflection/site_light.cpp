@@ -53,9 +53,9 @@ void drop_copies(Candidates& all) {
     all.drop(is_copy);
 }
 
-// Sites first stand as densely as receivers, then at every second receiver of which these say too
-// little. Each of them costs a quarter of its own rays and spares its neighbours theirs; a third
-// level would cost as much as it spares.
+// The first level of sites is as dense as receivers. A second level adds every second receiver
+// where the first is too sparse: such a site costs a quarter of a receiver's rays and saves its
+// neighbours theirs. A third level would cost as much as it saves.
 constexpr int kSiteLevels = 2;
 
 // Receivers where other light matters.
@@ -72,7 +72,7 @@ Candidates find_candidates(const LightInputs& inputs) {
     return all;
 }
 
-// Those of which the sites say too little.
+// Receivers that have too few sites around.
 Candidates find_unknown(const LightInputs& inputs, const BounceLight& light,
                         const Candidates& all) {
     Candidates unknown;

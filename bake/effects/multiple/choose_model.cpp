@@ -25,23 +25,23 @@ double expected_error(const formats::Medium& medium, const MaterialFacts& body) 
                                                  : 0);
 }
 
-// Sites so far apart that they hold what the dipole lacks blur light that scatters once. Where its
-// phase function is peaked, terms in the view err by more (tests/bench/RESULTS.md, "Walks"), and
-// where the medium varies nothing else knows it.
+// Whether walks also carry light that scatters once. Residual sites are so far apart that they blur
+// it. Under a peaked phase function terms in the view err by more than that
+// (tests/bench/RESULTS.md, "Walks"), and no other model simulates media that vary.
 bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
     return transport_mean_free_path(medium) > 0 && body.area > 0 &&
            (body.varies || !expected_sites(medium, body, knobs).is_residual ||
             scatters_in_peak(medium));
 }
 
-// What the dipole errs by because light scattered few times goes on in a peak: that scattered once
-// is left to terms in the view, and at most this many.
+// Error of the dipole in media with a forward peak: light scattered once is expanded in at most 25
+// terms of the view.
 double peak_error(const formats::Medium& medium) {
     constexpr unsigned kMostTerms = 25;
     return scatters_in_peak(medium) ? once_error(medium, kMostTerms) : 0;
 }
 
-// What walks err by where light leaves in such a peak (tests/bench/RESULTS.md, "Sites inside").
+// Error of walks where light leaves in such a peak (tests/bench/RESULTS.md, "Sites inside").
 constexpr double kWalksErrInPeak = 0.15;
 
 bool is_too_peaked(const formats::Medium& medium, const Knobs& knobs) {
@@ -107,12 +107,11 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     choice.all_orders = may_hold && !inputs.layout.at_entry;
     choice.dipole_error = expected_error(inputs.medium(), body);
     choice.walks_error = choice.all_orders ? walks_error(inputs.medium()) : 0;
-    // Peaked media may leave this layout once light scattered once has terms of its own.
+    // A peaked medium may not scatter at entry alone once single scattering has terms of its own.
     const bool may_walk = is_auto && expects_walks(inputs.medium(), body, layered, inputs.knobs) &&
                           (may_hold || !inputs.layout.at_entry);
     const bool is_doubted = inputs.knobs.error_target > 0 && !is_fixed(inputs.medium()) &&
-                            (asked == MultipleModel::scaled || asked == MultipleModel::dipole) &&
-                            choice.dipole_error > allowed;
+                            asked == MultipleModel::dipole && choice.dipole_error > allowed;
     if (body.varies && may_walk) {
         choice.model = MultipleModel::walks;
         return choice;
@@ -133,7 +132,6 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
     if (has_measured) {
         choice.dipole_error = choice.errors.dipole;
     }
-    // Never the scaled dipole: it costs about as much as walks (tests/bench/RESULTS.md, "Walks").
     if (may_walk && has_measured == is_measured && choice.dipole_error > allowed) {
         choice.model = MultipleModel::walks;
     }
@@ -208,8 +206,8 @@ PlanEntry decide_model(const PlanInput& input) {
                        : entry.on ? std::string_view()
                                   : "dipole";
     }
-    entry.all_orders = effect.on && entry.on && asked != MultipleModel::scaled &&
-                       (layered || hold_all_orders(medium, input.subject, input.knobs));
+    entry.all_orders =
+        effect.on && entry.on && (layered || hold_all_orders(medium, input.subject, input.knobs));
     entry.model_error = !effect.on         ? 0
                         : !entry.on        ? error
                         : entry.all_orders ? walks_error(medium)
@@ -234,8 +232,7 @@ void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
     }
     entry.reason =
         std::string(entry.choice) + ": measured at " + std::to_string(choice.errors.receivers) +
-        " vertices, the dipole differs from random walks by " + percent(choice.errors.dipole) +
-        ", scaled to them by " + percent(choice.errors.scaled);
+        " vertices, the dipole differs from random walks by " + percent(choice.errors.dipole);
 }
 
 }  // namespace opaline::bake

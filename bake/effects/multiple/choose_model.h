@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bake/effects/multiple/measure_models.h"
+#include "bake/effects/multiple/measure_views.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/plan/effect.h"
 
@@ -12,8 +13,8 @@ namespace opaline::bake {
 /// A share in words, "3.1 %".
 std::string percent(double error);
 
-/// Relative RMS that a model may err by where none is asked for: half of the square of
-/// Knobs::error_target; without one, as the quality allows.
+/// Largest relative RMS error of an automatically chosen model: half of the square of
+/// Knobs::error_target; without a target, by quality.
 double allowed_model_error(const Knobs& knobs);
 
 /// The mean cosine is 0.5 or more, either way: light scattered once depends on the view by more
@@ -23,8 +24,8 @@ bool scatters_in_peak(const formats::Medium& medium);
 /// Whether models are compared before the bake (measure_models), instead of estimated.
 bool measures_models(const Knobs& knobs);
 
-/// Whether random walks are expected: asked for, or the dipole errs by more than is allowed, by
-/// estimate, or light goes through other media inside (`layered`). choose_model may find otherwise.
+/// Whether random walks are expected: requested, or the dipole's estimated error exceeds the
+/// allowed one, or the body contains other media (`layered`). choose_model may decide otherwise.
 bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, bool layered,
                    const Knobs& knobs);
 
@@ -32,6 +33,7 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
 struct ModelChoice {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
     ModelErrors errors;
+    ViewErrors views;         ///< of walks, where the number of rows is ours to choose
     bool is_found = false;    ///< dipole_error comes from rays through the body (body_error)
     double dipole_error = 0;  ///< relative RMS, as a share of multiple scattering alone: estimated,
                               ///< found, or measured
@@ -39,12 +41,8 @@ struct ModelChoice {
     double walks_error =
         0;  ///< relative RMS of walks, where known: of media that scatter in a peak
 
-    /// What the model taken errs by.
-    double error() const {
-        return model == MultipleModel::dipole   ? dipole_error
-               : model == MultipleModel::scaled ? errors.scaled
-                                                : walks_error;
-    }
+    /// Error of the chosen model.
+    double error() const { return model == MultipleModel::dipole ? dipole_error : walks_error; }
 };
 
 /// The model asked for; automatic: the dipole where its error is allowed, else walks. The error is
@@ -52,10 +50,9 @@ struct ModelChoice {
 ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profile,
                          std::uint64_t& traced);
 
-/// Whether light that replaces the environment takes walks through a medium, with all orders of
-/// scattering, whatever model the environment's light has: no other effect adds what scatters once,
-/// and where sites stand so far apart that they blur it, it is blurred. Not where the user chose
-/// another model or a profile.
+/// Whether walks of all orders carry the light of emitters through a medium, whatever model the
+/// environment's light has. No other effect adds its single scattering; where sites are far apart
+/// they blur it. False where the user chose another model or a profile.
 bool takes_walks_alone(const formats::Medium& medium, const RowLayout& layout, const Knobs& knobs);
 
 /// The rule `multiple.model`.

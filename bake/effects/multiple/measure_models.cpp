@@ -15,9 +15,7 @@
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
-namespace {
 
-// White, and three suns that see each body from different sides.
 std::vector<TestLight> make_pilot_lights() {
     constexpr std::array<glm::vec3, 3> kSuns{
         {{0.36f, 0.48f, 0.8f}, {-0.8f, 0.6f, 0}, {0.48f, -0.36f, -0.8f}}};
@@ -37,22 +35,18 @@ std::vector<TestLight> make_pilot_lights() {
     return lights;
 }
 
+namespace {
+
 // Sums over receivers and lights; a product of two independent estimates has no noise on average.
 struct Squares {
-    double dipole = 0, scaled = 0, truth = 0;
+    double dipole = 0, truth = 0;
 };
 
 Squares compare(const TwoEstimates& walked, const TwoEstimates& dipole) {
     Squares squares;
-    const auto scale = [](const Luminance& to, const Luminance& from) {
-        return from[0] > 0 ? to[0] / from[0] : 1;
-    };
-    const double first = scale(walked.first, dipole.first);
-    const double second = scale(walked.second, dipole.second);
     for (std::size_t l = 0; l < walked.first.size(); ++l) {
         const double a = walked.first[l], b = walked.second[l];
         squares.dipole += (dipole.first[l] - a) * (dipole.second[l] - b);
-        squares.scaled += (first * dipole.first[l] - a) * (second * dipole.second[l] - b);
         squares.truth += a * b;
     }
     return squares;
@@ -95,7 +89,6 @@ ModelErrors measure_models(const EffectInputs& inputs, const MediumProfile& prof
         },
         [&](Range, Part&& part) {
             sum.dipole += part.squares.dipole;
-            sum.scaled += part.squares.scaled;
             sum.truth += part.squares.truth;
             traced += part.rays;
         });
@@ -103,7 +96,6 @@ ModelErrors measure_models(const EffectInputs& inputs, const MediumProfile& prof
         return {};
     }
     return {std::sqrt(std::max(0.0, sum.dipole / sum.truth)),
-            std::sqrt(std::max(0.0, sum.scaled / sum.truth)),
             static_cast<std::uint32_t>(points.size())};
 }
 

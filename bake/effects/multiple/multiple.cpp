@@ -9,7 +9,6 @@
 #include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
-#include "bake/effects/multiple/multiple_rates.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/effects/multiple/receiver_rows.h"
 #include "bake/effects/multiple/rule_layers.h"
@@ -100,6 +99,10 @@ PreparedPtr study(const EffectInputs& inputs, std::uint64_t& rays) {
     studied->profile = make_medium_profile(even_medium(inputs.bake.scene, inputs.material),
                                            inputs.knobs.seed, inputs.context);
     studied->choice = choose_model(inputs, studied->profile, rays);
+    if (studied->choice.model == MultipleModel::walks && studied->choice.all_orders &&
+        measures_views(inputs.knobs)) {
+        studied->choice.views = measure_views(inputs, studied->profile, rays);
+    }
     return studied;
 }
 
@@ -127,6 +130,7 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        knobs[kEpsilon],
                                        std::max(1u, inputs.layout.view_harmonics),
                                        inputs.layout.all_orders || walks_alone,
+                                       inputs.layout.fills_crossed,
                                        inner_materials(inputs),
                                        inputs.layout.layered,
                                        inputs.light()},
@@ -169,29 +173,14 @@ std::uint32_t truth_points(TruthEffort effort) {
     return effort.target >= 0.03 ? 256 : effort.target >= 0.015 ? 512 : 1024;
 }
 
-// The dipole times what walks find over what it has under the first light, which is white.
-TwoEstimates scale_to(const TwoEstimates& walked, TwoEstimates dipole) {
-    const auto scale = [](const Luminance& to, Luminance& from) {
-        const double ratio = from[0] > 0 ? to[0] / from[0] : 1;
-        for (double& value : from) {
-            value *= ratio;
-        }
-    };
-    scale(walked.first, dipole.first);
-    scale(walked.second, dipole.second);
-    return dipole;
-}
-
 PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
                        std::span<const TestLight> lights) {
     constexpr std::uint32_t kRaysPerSun = 4;  // at a random point of many
     auto truth = std::make_unique<Truth>();
-    const MultipleModel model = model_of(inputs.own);
-    if (model != MultipleModel::walks) {
+    if (model_of(inputs.own) == MultipleModel::dipole) {
         truth->integral =
             make_surface_integral(inputs.bake.scene, inputs.material, profile_of(inputs.own));
-    }
-    if (model != MultipleModel::dipole) {
+    } else {
         truth->space =
             make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(), inputs.material,
                             inputs.layout.bands() == 1, inner_materials(inputs));
@@ -204,37 +193,36 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
     return truth;
 }
 
+// Rows by view are asked for one view; else the mean over all is what the row holds.
+glm::vec3 seen_of(const EffectInputs& inputs, const TruthReceiver& receiver) {
+    if (receiver.seen != glm::vec3(0)) {
+        return receiver.seen;
+    }
+    return inputs.layout.view_harmonics > 0 ? receiver.inside.normal : glm::vec3(0);
+}
+
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& truth = static_cast<const Truth&>(prepared);
-    const MultipleModel model = model_of(inputs.own);
-    TwoEstimates walked, dipole;
-    if (model != MultipleModel::dipole) {
-        walked = walk_to_lights(
-            truth.space,
-            {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
-             truth.points, inputs.layout.view_harmonics > 0, &truth.other},
-            receiver.inside,
-            {inputs.layout.all_orders ? 1u : 2u,
-             !inputs.layout.all_orders && model == MultipleModel::walks && truth.other},
-            inputs.knobs.seed, receiver.key, rays);
+    if (model_of(inputs.own) == MultipleModel::dipole) {
+        return integrate_multiple(truth.integral,
+                                  {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth,
+                                   truth.points, &truth.other},
+                                  receiver.inside.position, {inputs.knobs.seed, receiver.key},
+                                  rays);
     }
-    if (model != MultipleModel::walks) {
-        dipole =
-            integrate_multiple(truth.integral,
-                               {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth,
-                                truth.points, &truth.other},
-                               receiver.inside.position, {inputs.knobs.seed, receiver.key}, rays);
-    }
-    return model == MultipleModel::walks    ? walked
-           : model == MultipleModel::dipole ? dipole
-                                            : scale_to(walked, std::move(dipole));
+    return walk_to_lights(
+        truth.space,
+        {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
+         truth.points, seen_of(inputs, receiver), &truth.other},
+        receiver.inside,
+        {inputs.layout.all_orders ? 1u : 2u, !inputs.layout.all_orders && truth.other,
+         inputs.layout.fills_crossed},
+        inputs.knobs.seed, receiver.key, rays);
 }
 
-// The scaled dipole has the detail of its dipole.
 bool takes_even_media(const Knobs& knobs) {
-    const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
-    return asked == MultipleModel::dipole || asked == MultipleModel::scaled;
+    return static_cast<MultipleModel>(whole(knobs, kMultipleModel)) == MultipleModel::dipole;
 }
 
 void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings) {
@@ -257,6 +245,9 @@ void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>&
 void amend(const EffectInputs& inputs, PlanEntry& entry) {
     if (entry.name == "multiple.model") {
         describe_choice(static_cast<const Studied&>(*inputs.own.study).choice, entry);
+    }
+    if (entry.name == "multiple.view") {
+        amend_views(static_cast<const Studied&>(*inputs.own.study).choice.views, inputs, entry);
     }
 }
 
@@ -289,7 +280,6 @@ EffectDescriptor describe_multiple(Effect id) {
                               return multiple_truth_work(cost, truth_points(effort));
                           }},
             .adds_other_light = true,
-            .calibrate = calibrate_multiple,
             .sample_bytes = sample_bytes,
             .add_at_entry = add_at_entry,
             .takes_even_media = takes_even_media,

@@ -21,7 +21,14 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kGreyEntry = 0.8;  // what one band costs of what three do; measured
+constexpr double kGreyEntry = 0.8;  // cost of one band over that of three; measured
+
+constexpr CostBySize kSharedTexel{2.6e-8, 5.5e-8};  // irradiance of a sample, with shared rays
+constexpr double kSumEntry = 2.9e-9;                // one entry of a sample into the sum of a node
+constexpr double kTakeWeight = 5.8e-8;  // per accepted node or sample, traversal included
+// The surface integral of a truth: its triangles, and rays of its points to all lights.
+constexpr double kSplitTriangle = 5.3e-8;
+constexpr CostBySize kSurfacePoint{4.9e-6, 6.7e-6};
 
 double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
@@ -113,25 +120,24 @@ Work profile_work(const SubjectCost& cost) {
         medium.fidelity == formats::Medium::Fidelity::paper) {
         return {};
     }
-    return walk_work(cost.input, medium);
+    return walk_work(medium);
 }
 
 Work samples_work(const SubjectCost& cost) {
     const CostInput& input = cost.input;
-    const Rates& rates = input.rates;
     const Knobs& knobs = input.knobs;
     const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
     const double own = texels(knobs.cubemap_size);
-    Work work{samples * rates.place_sample, 0};
-    const double seen = !cost.layout.occluded ? 0.5 * rates.open_cell  // half are below the horizon
-                        : knobs.exact_rays    ? 0.5 * rates.coherent_ray.at(input.triangles)
-                                              : rates.shared_texel.at(input.triangles);
-    work.shared += samples * own * (seen + rates.truncate_texel);
+    Work work{samples * kPlaceSample, 0};
+    const double seen = !cost.layout.occluded ? 0.5 * kOpenCell  // half are below the horizon
+                        : knobs.exact_rays    ? 0.5 * kCoherentRay.at(input.triangles)
+                                              : kSharedTexel.at(input.triangles);
+    work.shared += samples * own * (seen + kTruncateTexel);
     // build_cluster_tree: each level adds all samples up; each node is truncated.
     const double levels = std::max(1.0, std::ceil(std::log2(samples / kSamplesPerLeaf)) + 1);
     const double nodes = 2 * samples / kSamplesPerLeaf;
-    work.shared += samples * levels * kept_by_samples(knobs) * rates.sum_entry +
-                   nodes * own * rates.truncate_texel;
+    work.shared +=
+        samples * levels * kept_by_samples(knobs) * kSumEntry + nodes * own * kTruncateTexel;
     if (expects_walks(cost.medium(), cost.facts, cost.layout.layered, knobs)) {
         work += walks_work(cost);
     }
@@ -145,16 +151,13 @@ Work multiple_rows_work(const SubjectCost& cost) {
     if (expects_walks(cost.medium(), cost.facts, cost.layout.layered, knobs)) {
         return walked_rows_work(cost);
     }
-    const double entry =
-        cost.input.rates.gather_entry * (cost.layout.bands() == 1 ? kGreyEntry : 1);
-    return {0, cost.receivers * weights *
-                   (cost.input.rates.take_weight + kept_by_samples(knobs) * entry)};
+    const double entry = kGatherEntry * (cost.layout.bands() == 1 ? kGreyEntry : 1);
+    return {0, cost.receivers * weights * (kTakeWeight + kept_by_samples(knobs) * entry)};
 }
 
 Work multiple_truth_work(const SubjectCost& cost, double points) {
-    const Rates& rates = cost.input.rates;
-    return {0, cost.receivers * (cost.facts.triangles * rates.split_triangle +
-                                 2 * points * rates.surface_point.at(cost.input.triangles))};
+    return {0, cost.receivers * (cost.facts.triangles * kSplitTriangle +
+                                 2 * points * kSurfacePoint.at(cost.input.triangles))};
 }
 
 double sample_bytes(const Knobs& knobs) {
@@ -163,8 +166,8 @@ double sample_bytes(const Knobs& knobs) {
     constexpr double kTree = 2;              // nodes hold as much as the samples
     constexpr double kMoments = 0.75;        // of a sample's entries
     constexpr double kSiteEntry = 16;        // of a site's row: index and three values
-    const auto model = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
-    const bool may_walk = model == MultipleModel::automatic || model == MultipleModel::walks;
+    const bool may_walk =
+        static_cast<MultipleModel>(whole(knobs, kMultipleModel)) != MultipleModel::dipole;
     const double walked = may_walk ? kMoments * knobs[kSamples] * kept_by_samples(knobs) * kEntry +
                                          knobs[kSites] * kept_by_samples(knobs) * kSiteEntry
                                    : 0;

@@ -8,8 +8,8 @@ namespace opaline::bake {
 /// Number of samples on the surface of a medium.
 double expected_samples(const formats::Medium& medium, double area, const Knobs& knobs);
 
-/// Nodes and samples that a gather on average takes for a receiver: where the profile changes over
-/// a patch by what `tolerance` allows, the patch is one.
+/// Mean number of nodes and samples that a gather sums for a receiver: a patch over which the
+/// profile changes by less than `tolerance` counts as one.
 double count_weights(const formats::Medium& medium, const MaterialFacts& facts, double samples,
                      double tolerance);
 

@@ -18,28 +18,27 @@ inline bool is_walked(const RowLayout& layout, std::span<const PlanEntry> decisi
                                [](const PlanEntry& entry) { return entry.on && entry.all_orders; });
 }
 inline constexpr std::array<double, 3> kViewCounts{1, 4, 9};
-inline constexpr const char* kWhyIdle = "no medium carries light across itself";
 
-// More than one sample a path is worth it below 3 %: a pilot of one would be for nothing.
+// Below an error of 3 % more than one sample a path pays. A pilot starts there at once.
 inline double samples_for(double error) {
     return error < 0.03 ? 240000 : 60000;
 }
 inline double per_path_for(double error) {
     return error < 0.03 ? 4 : 1;
 }
-// The error of walks falls with the root of their number. What is left of it shows as blotches: ten
-// times the walks that a target as an RMS needs.
+// The error of walks falls with the root of their number. The remaining noise shows as blotches, so
+// ten times as many walks are taken as the RMS target needs.
 inline double walks_for(double error) {
     return std::clamp(40 / (error * error), 500.0, 40000.0);
 }
-// In all as production's are to those around: fewer would widen the radius.
+// The total has production's ratio to walks around a receiver. Fewer would widen the radius.
 inline double all_walks_for(double error) {
     return std::clamp(1500 * walks_for(error), 1e6, 4.8e7);
 }
 inline double sites_for(double error) {
     return error < 0.05 ? 40000 : 20000;
 }
-inline constexpr std::array<std::string_view, 4> kModels{"auto", "scaled", "dipole", "walks"};
+inline constexpr std::array<std::string_view, 3> kModels{"auto", "dipole", "walks"};
 inline constexpr std::array<double, 7> kSampleLadder{1000, 2000, 4000, 8000, 16000, 32000, 64000};
 inline constexpr std::array<double, 5> kSampleDiagonal{4000, 8000, 16000, 32000, 64000};
 inline constexpr std::array<double, 6> kSampleTruths{300000, 150000, 150000, 60000, 20000, 20000};
@@ -69,26 +68,23 @@ inline constexpr KnobSpec kSamples{
     .theory = {.label = "surface samples",
                .words = "square of the spacing, where transport is smooth at that scale",
                .rate = -1},
-    .matters = multiple_knobs::carries_light,
-    .why_idle = multiple_knobs::kWhyIdle};
+    .matters = multiple_knobs::carries_light};
 
 /// MultipleModel.
 inline constexpr KnobSpec kMultipleModel{
     .name = "multiple_model",
     .option = "--multiple-model",
-    .placeholder = "auto|scaled|dipole|walks [auto]",
+    .placeholder = "auto|dipole|walks [auto]",
     .help =
-        "how light scattered many times is computed: by random walks in the true shape, by the "
-        "dipole of a half space, by the dipole scaled to walks; auto: the dipole where its "
-        "error fits, else walks",
+        "how light scattered many times is computed: by random walks in the true shape or by the "
+        "dipole of a half space; auto: the dipole where its error fits, else walks",
     .lowest = 0,
-    .highest = 3,
+    .highest = 2,
     .words = multiple_knobs::kModels,
     .preset = {0, 0, 0, 0},
-    .matters = multiple_knobs::carries_light,
-    .why_idle = multiple_knobs::kWhyIdle};
+    .matters = multiple_knobs::carries_light};
 
-/// Rows of a receiver that say how light scattered many times changes with the view.
+/// Rows of a receiver for the dependence of multiple scattering on the view.
 inline constexpr KnobSpec kViewTerms{
     .name = "view_terms",
     .option = "--view-terms",
@@ -103,8 +99,7 @@ inline constexpr KnobSpec kViewTerms{
     .allowed = multiple_knobs::kViewCounts,
     .preset = {0, 0, 0, 0},
     .label = "K = %g",
-    .matters = multiple_knobs::is_walked,
-    .why_idle = "no medium's light is followed by random walks that stand close enough"};
+    .matters = multiple_knobs::is_walked};
 
 /// Random walks around each receiver: within the radius of sites that its row is fitted to.
 inline constexpr KnobSpec kWalksAround{.name = "walks_around",
@@ -154,7 +149,6 @@ inline constexpr KnobSpec kEpsilon{
                .words = "each cluster errs by at most \u03b5 (signs differ, so sums err by less)",
                .rate = 1,
                .fine_is_small = true},
-    .matters = multiple_knobs::carries_light,
-    .why_idle = multiple_knobs::kWhyIdle};
+    .matters = multiple_knobs::carries_light};
 
 }  // namespace opaline::bake

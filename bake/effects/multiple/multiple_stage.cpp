@@ -1,11 +1,9 @@
 #include "bake/effects/multiple/multiple_stage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 #include "bake/effects/multiple/gather_multiple.h"
@@ -62,38 +60,6 @@ void gather_dipole_row(const MultipleStage& stage, glm::vec3 position, glm::vec3
     }
 }
 
-// Sum of a row's six face averages per band: light under a sky that is even over the cube. `step`:
-// floats per texel.
-glm::vec3 sum_of_faces(std::span<const float> row, std::size_t step) {
-    const std::size_t face = row.size() / (6 * step);
-    glm::vec3 sum(0);
-    for (std::size_t f = 0; f < 6; ++f) {
-        const float* v = &row[step * f * face];
-        sum += glm::vec3(v[0], step == 1 ? 0 : v[1], step == 1 ? 0 : v[2]);
-    }
-    return sum;
-}
-
-// What walks find around a point over what the dipole has there, per band.
-glm::vec3 ratio_at(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal) {
-    if (stage.walked.empty()) {
-        return glm::vec3(1);
-    }
-    constexpr float kMost = 4;  // noise, where hardly any light comes out
-    std::vector<SiteWeight> weights;
-    stage.walks.field.weigh(position, normal, weights);
-    glm::vec3 walked(0), dipole(0);
-    for (const SiteWeight& w : weights) {
-        walked += w.weight * stage.walked[w.site];
-        dipole += w.weight * stage.dipole[w.site];
-    }
-    glm::vec3 ratio(1);
-    for (int b = 0; b < 3; ++b) {
-        ratio[b] = dipole[b] > 0 ? std::clamp(walked[b] / dipole[b], 0.0f, kMost) : 1;
-    }
-    return ratio;
-}
-
 // Of the body's medium and, where they matter, of those inside [m].
 double shortest_path(const formats::Scene& scene, std::uint32_t material,
                      const MultipleOptions& options) {
@@ -114,41 +80,32 @@ struct EnteringLight {
 
 void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering, double walks,
           const MultipleOptions& options, const Context& context, MultipleStage& stage) {
-    const bool scales = options.model == MultipleModel::scaled;
-    std::optional<ExitCells> cells;
-    if (!scales) {
-        cells.emplace(entering.samples, options.cubemap_size, make_exit_lobe(stage.medium.eta));
-    }
-    const ExitLight light(entering.samples, entering.rows, std::move(cells), stage.medium.exit,
-                          options.light == nullptr ? nullptr : &entering.other);
-    const bool is_inside = !scales && !plan.is_residual && options.all_orders &&
-                           space.media.size() == 1 && !space.media.front().field;
+    const ExitLight light(
+        entering.samples, entering.rows,
+        ExitCells(entering.samples, options.cubemap_size, make_exit_lobe(stage.medium.eta)),
+        stage.medium.exit, options.light == nullptr ? nullptr : &entering.other);
+    const bool is_inside = !plan.is_residual && options.all_orders && space.media.size() == 1 &&
+                           !space.media.front().field;
     const WalkStageOptions wanted{
         .radius = plan.radius,
         .walks = walks,
         .is_inside = is_inside,
-        .views = scales ? 1 : options.views,
+        .views = options.views,
         .rows = {.cubemap_size = options.cubemap_size,
-                 .kept = scales ? 6 : kept_of(options),
+                 .kept = kept_of(options),
                  .bands = options.bands,
                  .seed = options.seed,
                  .orders = {options.all_orders ? 1u : 2u,
-                            !options.all_orders && !scales && options.light != nullptr}}};
+                            !options.all_orders && options.light != nullptr,
+                            options.fills_crossed}}};
     const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
-    const std::size_t step = options.bands == 1 ? 1 : 4;
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));
     std::function<void(std::size_t, std::span<float>)> subtract;
     if (!stage.tree.nodes.empty()) {
-        stage.walked.resize(scales ? sites.size() : 0);
-        stage.dipole.resize(scales ? sites.size() : 0);
         subtract = [&](std::size_t s, std::span<float> row) {
             std::vector<float> dipole(row.size());
             gather_dipole_row(stage, sites[s].position, sites[s].normal, options.tolerance, scale,
                               options.bands, dipole);
-            if (scales) {
-                stage.walked[s] = sum_of_faces(row, step);
-                stage.dipole[s] = sum_of_faces(dipole, step);
-            }
             for (std::size_t k = 0; k < dipole.size(); ++k) {
                 row[k] -= dipole[k];
             }
@@ -189,14 +146,14 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     stage.profile =
         make_gather_profile(stage.medium, std::sqrt(per_sample),
                             scene_diagonal(scene, all_primitives(scene)), options.bands);
-    const bool walks = options.model != MultipleModel::dipole;
+    const bool walks = options.model == MultipleModel::walks;
     stage.model = options.model;
     SitePlan plan;
     if (walks) {
         plan = plan_sites(area, scene_diagonal(scene, primitives), path, options.walks);
         plan.is_residual = plan.is_residual && !options.layered;
     }
-    const bool walks_alone = options.model == MultipleModel::walks && !plan.is_residual;
+    const bool walks_alone = walks && !plan.is_residual;
     SampleTransport transport =
         bake_sample_transport(rays, samples,
                               {options.cubemap_size, options.kept, stage.medium.eta,
@@ -231,8 +188,8 @@ void gather_multiple_rows(const MultipleStage& stage, const BodyPoint& point, do
     if (stage.tree.nodes.empty()) {
         std::ranges::fill(rgbx, 0.0f);
     } else {
-        gather_dipole_row(stage, point.position, point.normal, tolerance,
-                          ratio_at(stage, point.position, point.normal), bands, rgbx);
+        gather_dipole_row(stage, point.position, point.normal, tolerance, glm::vec3(1), bands,
+                          rgbx);
     }
     std::ranges::fill(views, 0.0f);
     if (stage.model == MultipleModel::walks) {

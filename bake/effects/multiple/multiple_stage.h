@@ -17,7 +17,6 @@ namespace opaline::bake {
 /// How light scattered many times is computed.
 enum class MultipleModel : std::uint8_t {
     automatic,  ///< the dipole where its error fits, else walks
-    scaled,     ///< the dipole, each row scaled to what walks find under even light
     dipole,     ///< every surface is a half space
     walks       ///< random walks in the true shape
 };
@@ -28,9 +27,8 @@ struct MultipleStage {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
     GatherProfile profile;                        ///< of the medium, for these samples
     ClusterTree tree;                             ///< empty where walks need no dipole
-    WalkStage walks;  ///< rows, or where there is a tree what the dipole's rows lack
-    std::vector<glm::vec3> walked, dipole;  ///< `scaled`: light at sites under an even sky
-    std::uint64_t rays = 0;                 ///< traced
+    WalkStage walks;         ///< rows, or their difference to the dipole's where there is a tree
+    std::uint64_t rays = 0;  ///< traced
 };
 
 struct MultipleOptions {
@@ -45,12 +43,13 @@ struct MultipleOptions {
     MultipleModel model = MultipleModel::dipole;
     WalkBudget walks;
     double tolerance = 1e-3;  ///< GatherOptions, of the dipole at sites
-    /// 4 or 9: walks also say how the light changes with the view (SiteRows).
+    /// 4 or 9: walks also fill rows for the dependence on the view (SiteRows).
     std::uint32_t views = 1;
     bool all_orders = false;             ///< walks also count light that scatters once
+    bool fills_crossed = false;          ///< as WalkOrders says
     std::vector<std::uint32_t> inner{};  ///< materials of other media inside, for walks
-    bool layered = false;               ///< and these matter: the dipole tells nothing of the light
-    const OtherLight* light = nullptr;  ///< besides, or instead of, that of the environment
+    bool layered = false;                ///< and these matter: the dipole cannot be used
+    const OtherLight* light = nullptr;   ///< besides, or instead of, that of the environment
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,

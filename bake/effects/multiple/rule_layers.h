@@ -18,8 +18,8 @@ namespace opaline::bake {
 /// last factor counts walks that the boundary sends back in. 1 where nothing is absorbed.
 double share_that_reaches(const formats::Medium& medium, double depth);
 
-/// Bound on what other media inside a body change of its light under `white`: the share of light
-/// that reaches the nearest that differs from its own. 0: there is none.
+/// Bound on how much other media inside a body change its light under `white`: the share of light
+/// that reaches the nearest one that differs from the body's own. 0: there is none.
 double layer_bound(const formats::Medium& medium, const MaterialFacts& body);
 
 /// The rule `multiple.layers`: whether walks must pass through the media inside. After the rule
@@ -30,10 +30,10 @@ PlanEntry decide_layers(const PlanInput& input);
 /// The entry of that name among those decided on before; null: there is none.
 const PlanEntry* earlier_entry(const PlanInput& input, std::string_view name);
 
-/// The materials of the media inside, of which walks must know whether the rule is on or off.
+/// The materials of the media inside. Walks need them whether the rule is on or off.
 std::vector<std::uint32_t> inner_materials(const EffectInputs& inputs);
 
-/// Warns where the model in use knows nothing of them.
+/// Warns where the model in use ignores them.
 void warn_of_layers(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings);
 
 }  // namespace opaline::bake

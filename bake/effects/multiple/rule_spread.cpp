@@ -51,10 +51,10 @@ PlanEntry decide_spread(const PlanInput& input) {
     const formats::Medium& medium = *input.material.medium;
     const auto eta = static_cast<double>(medium.eta), g = formats::mean_cosine(medium.phase);
     const MaterialFacts& subject = input.subject;
-    // Irradiance varies at most from vertex to vertex. The mean thickness of a closed body of
+    // Irradiance varies at most from vertex to vertex. The mean thickness of a body of
     // volume V and area A is 2 V/A; thin parts are taken as a quarter of that.
     const Shape shape{4 * subject.mean_edge,
-                      subject.is_closed() ? 0.5 * subject.volume / subject.area : 0,
+                      subject.has_thickness() ? 0.5 * subject.volume / subject.area : 0,
                       std::acos(std::clamp(1 - 2 * subject.horizon.behind_facets, -1.0, 1.0))};
     PlanEntry entry;
     entry.on = true;

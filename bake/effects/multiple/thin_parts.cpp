@@ -97,7 +97,8 @@ double open_body_error(const std::array<double, 3>& lengths, const RayScene& ray
                     .to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u[0])});
             const InwardPath path = trace_inward_path(rays, point, kNoLimit);
             ++count;
-            // A normal that points out of the body says nothing of its thickness.
+            // Skip vertices whose normal points out of the body: the ray would not measure its
+            // thickness.
             if (!path.open && path.length > 0) {
                 sum += static_cast<double>(path.length);
                 ++ends;

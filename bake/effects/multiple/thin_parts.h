@@ -13,30 +13,29 @@
 namespace opaline::bake {
 
 /// Transport mean free path 1 / (sigma_s' + sigma_a) [m] of each band. 0: the band returns less
-/// than a tenth of what the brightest one does, and its error does not show.
+/// than a tenth of the light of the brightest band, so that its error is invisible.
 std::array<double, 3> transport_lengths(const formats::Medium& medium,
                                         const MediumProfile& profile);
 
-/// What the profile of a half space errs by in a body whose mean chord is `chord` transport mean
-/// free paths: relative RMS of multiple scattering against the total light, measured by random
-/// walks in scans and models at albedo .99, under white, a studio and suns; interpolated, at most
-/// 2. Neither sign nor direction: balls are too dark, sheets too bright, and light from behind errs
-/// by up to four times as much.
+/// Error of the half-space profile in a body whose mean chord is `chord` transport mean free paths:
+/// relative RMS of multiple scattering against the total light, measured by random walks in scans
+/// and models at albedo .99, under white, a studio and suns; interpolated, at most 2. The sign
+/// varies: balls are too dark, sheets too bright. Light from behind errs by up to four times as
+/// much.
 double half_space_error(double chord);
 
 /// The same of a body with the mean chord 4 V / S [m], in the worst band of `lengths`.
 double closed_body_error(const std::array<double, 3>& lengths, double mean_chord);
 
-/// The same of a body that does not close, by the mean length of cosine-distributed rays into it,
-/// which is the mean chord of a closed one; times their share, as those that look out through a
-/// hole err by nothing.
+/// The same for an open body, by the mean length of cosine-distributed rays into it, which is the
+/// mean chord of a closed body. Multiplied by the share of rays that do not leave through a hole.
 double open_body_error(const std::array<double, 3>& lengths, const RayScene& rays,
                        std::span<const BodyPoint> points);
 
 /// Receivers of the material with a normal, `count` of them spread over all, or all.
 std::vector<BodyPoint> draw_body_points(const EffectInputs& inputs, std::size_t count);
 
-/// closed_body_error where volume and area say how thick the body is, else open_body_error.
+/// closed_body_error where the body has a volume and an area, else open_body_error.
 double body_error(const EffectInputs& inputs, const MediumProfile& profile);
 
 /// Warns of a body that light crosses, where a half space's profile errs by a tenth or more.

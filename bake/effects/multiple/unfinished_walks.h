@@ -8,8 +8,9 @@
 
 namespace opaline::bake {
 
-/// Where a thousandth or more of the light of a material's walks ends before it leaves the surface:
-/// how much, why, and what it counts as (WalkCounts::correction). `material`: its name.
+/// A warning where a thousandth or more of the light of a material's walks ends before it leaves
+/// the surface: how much, why, and how it is corrected (WalkCounts::correction). `material`: its
+/// name.
 std::optional<formats::Diagnostic> describe_unfinished(const std::string& material,
                                                        const WalkCounts& counts);
 

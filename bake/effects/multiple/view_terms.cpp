@@ -19,13 +19,13 @@
 namespace opaline::bake {
 namespace {
 
-// Three rows more cost time and memory. From production on they are taken nearly always, because
+// Three more rows cost time and memory. From production on nearly all bodies have them, because
 // thin parts of a body err by more than the estimate for the whole (walks/README.md, "Views").
 double allowed_view_error(const Knobs& knobs) {
     return knobs.error_target > 0                 ? 0.3 * knobs.error_target
            : knobs.quality == Quality::reference  ? 0.005
            : knobs.quality == Quality::production ? 0.005
-           : knobs.quality == Quality::preview    ? 0.1
+           : knobs.quality == Quality::preview    ? 0.05
                                                   : 0.2;
 }
 
@@ -98,8 +98,7 @@ double curvature(double eta, const ViewFit& fit, Radiance&& radiance) {
 // In transport mean free paths; infinite where it is not known or nothing scatters.
 double mean_chord(const formats::Medium& medium, const MaterialFacts& body) {
     const double length = transport_mean_free_path(medium);
-    const double chord =
-        body.is_closed() && body.area > 0 ? 4 * std::abs(body.volume) / body.area : 0;
+    const double chord = body.has_thickness() ? 4 * std::abs(body.volume) / body.area : 0;
     return length > 0 && chord > 0 ? chord / length : HUGE_VAL;
 }
 
@@ -109,8 +108,21 @@ constexpr double kThinChord = 2;
 // 36 pi V^2 / S^3: 1 of a ball, 0.08 of a square plate ten times as wide as thick.
 bool is_flat(const MaterialFacts& body) {
     constexpr double kPlate = 0.08;
-    return body.is_closed() && 36 * std::numbers::pi * body.volume * body.volume <
-                                   kPlate * body.area * body.area * body.area;
+    return body.has_thickness() && 36 * std::numbers::pi * body.volume * body.volume <
+                                       kPlate * body.area * body.area * body.area;
+}
+
+std::uint32_t rows_for(double curved, const Knobs& knobs) {
+    return curved > allowed_curvature(knobs) ? 9 : 4;
+}
+
+// `one`, `four`: what so many rows err by.
+void take_views(double one, double four, std::uint32_t rows, PlanEntry& entry) {
+    entry.on = true;
+    entry.terms = rows;
+    entry.reason = std::to_string(rows) + " rows: " +
+                   (rows == 9 ? "four, linear in the view, would err by some " + percent(four)
+                              : "one for all views would err by some " + percent(one));
 }
 
 }  // namespace
@@ -166,9 +178,7 @@ PlanEntry decide_views(const PlanInput& input) {
     const double error = one_view_error(medium, input.subject);
     const double curved = four_views_error(medium, input.subject);
     const double allowed = allowed_view_error(input.knobs);
-    const std::uint32_t wanted = given > 1                                 ? given
-                                 : curved > allowed_curvature(input.knobs) ? 9
-                                                                           : 4;
+    const std::uint32_t wanted = given > 1 ? given : rows_for(curved, input.knobs);
     const bool is_known = input.subject.has_thickness() || measures_models(input.knobs);
     PlanEntry entry;
     entry.alternative = true;
@@ -187,17 +197,39 @@ PlanEntry decide_views(const PlanInput& input) {
     } else if (given == 1) {
         entry.reason = "one row for all views, as --view-terms says";
     } else {
-        entry.on = true;
-        entry.terms = wanted;
-        entry.reason =
-            std::to_string(wanted) + " rows: " +
-            (wanted == 9 ? "four, linear in the view, would err by some " + percent(curved)
-                         : "one for all views would err by some " + percent(error));
+        take_views(error, curved, wanted, entry);
     }
     if (model.all_orders && is_known && !input.knobs.separate_terms) {
         entry.model_error = !entry.on ? error : entry.terms == 4 ? curved : 0;
     }
     return entry;
+}
+
+bool measures_views(const Knobs& knobs) {
+    return (knobs.error_target > 0 || knobs.quality >= Quality::preview) &&
+           whole(knobs, kViewTerms) == 0 && !knobs.separate_terms;
+}
+
+void amend_views(const ViewErrors& measured, const EffectInputs& inputs, PlanEntry& entry) {
+    if (measured.receivers == 0) {
+        return;
+    }
+    const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
+    const bool is_known = body.has_thickness();
+    const double one =
+        std::max(measured.one, is_known ? one_view_error(inputs.medium(), body) : 0.0);
+    // What four leave is too small a difference to be measured so.
+    const double four = is_known ? four_views_error(inputs.medium(), body) : 0;
+    const std::uint32_t rows = rows_for(four, inputs.knobs);
+    if (one > allowed_view_error(inputs.knobs) || rows == 9) {
+        take_views(one, four, rows, entry);
+    } else {
+        entry.on = false;
+        entry.terms = 1;
+        entry.reason = "one row for all views errs by some " + percent(one);
+    }
+    entry.reason += ", measured at " + std::to_string(measured.receivers) + " vertices";
+    entry.model_error = !entry.on ? one : entry.terms == 4 ? four : 0;
 }
 
 }  // namespace opaline::bake

@@ -8,12 +8,18 @@
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/walks/walk_balls.h"
 #include "bake/plan/plan_input.h"
+#include "bake/plan/walk_work.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
 namespace {
+
+constexpr double kWalkExit = 2.1e-7;                // the sample at a walk's exit
+constexpr double kSiteWeight = 1.3e-7;              // of a site around a receiver, the fit included
+constexpr CostBySize kFirstFlight{2.7e-5, 4.2e-5};  // of a receiver, with all its views
+constexpr CostBySize kInnerSite{6.5e-7, 9.5e-7};    // in view of a receiver, the fit included
 
 constexpr double kExitsPerWalk = 1.5;  // measured at indices from 1.3 to 1.5
 constexpr double kCellEntries = 250;   // an exit's lobe in 96 cells, in entries of a row
@@ -78,9 +84,8 @@ SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body
 
 double count_body_events(const formats::Medium& medium, const MaterialFacts& body) {
     const auto eta = static_cast<double>(medium.eta);
-    const double chord = std::abs(body.volume) > 0 && body.is_closed()
-                             ? 4 * std::abs(body.volume) / body.area
-                             : 2.0 / 3 * std::sqrt(body.area / std::numbers::pi);
+    const double chord = body.has_thickness() ? 4 * std::abs(body.volume) / body.area
+                                              : 2.0 / 3 * std::sqrt(body.area / std::numbers::pi);
     const double escape = std::max(1e-3, 1 - fresnel_moments(eta).external);
     double most = 0;
     for (const Band& band : bands_of(medium)) {
@@ -95,7 +100,6 @@ double count_body_events(const formats::Medium& medium, const MaterialFacts& bod
 }
 
 Work walks_work(const SubjectCost& cost) {
-    const Rates& rates = cost.input.rates;
     const Knobs& knobs = cost.input.knobs;
     if (!(shortest_path(cost.medium(), cost.facts) > 0)) {
         return {};
@@ -104,17 +108,15 @@ Work walks_work(const SubjectCost& cost) {
     const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
                                   static_cast<double>(plan.sites));
     const double views = are_inside(cost, plan) ? 0 : rows_by_view(cost.layout);
-    const double entries =
-        kOwnSample * (kCellEntries + (1 + views) * kept(knobs)) * rates.gather_entry;
+    const double entries = kOwnSample * (kCellEntries + (1 + views) * kept(knobs)) * kGatherEntry;
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     // Measured on Spot: an event with veins to evaluate takes as long as three without.
     const auto& variation = cost.medium().variation;
     const double looked_up = !variation ? 1 : variation->marble ? 3 : 1.5;
-    return {plan.sites * rates.place_sample,
-            walks * (looked_up * count_steps(cost.medium(), cost.facts) *
-                         rates.body_event.at(cost.input.triangles) +
-                     kExitsPerWalk * (rates.walk_exit + entries)) +
-                plan.sites * (1 + views) * dense * rates.truncate_texel};
+    return {plan.sites * kPlaceSample, walks * (looked_up * count_steps(cost.medium(), cost.facts) *
+                                                    kBodyEvent.at(cost.input.triangles) +
+                                                kExitsPerWalk * (kWalkExit + entries)) +
+                                           plan.sites * (1 + views) * dense * kTruncateTexel};
 }
 
 Work walked_rows_work(const SubjectCost& cost) {
@@ -125,21 +127,20 @@ Work walked_rows_work(const SubjectCost& cost) {
     const double sites = std::min(std::numbers::pi * plan.radius * plan.radius * plan.sites /
                                       std::max(cost.facts.area, 1e-300),
                                   static_cast<double>(plan.sites));
-    const Rates& rates = cost.input.rates;
     if (are_inside(cost, plan)) {
         const double wider =
             inner_radius(plan, shortest_path(cost.medium(), cost.facts)) / plan.radius;
         const double seen = std::min(wider * wider * sites, static_cast<double>(plan.sites));
-        return {0, cost.receivers * (rates.first_flight.at(cost.input.triangles) +
-                                     seen * (rates.inner_site.at(cost.input.triangles) +
+        return {0, cost.receivers * (kFirstFlight.at(cost.input.triangles) +
+                                     seen * (kInnerSite.at(cost.input.triangles) +
                                              (1 + rows_by_view(cost.layout)) *
-                                                 kept(cost.input.knobs) * rates.gather_entry))};
+                                                 kept(cost.input.knobs) * kGatherEntry))};
     }
     // By view: four times as many sites, of each three or eight rows with a quarter of the entries.
     const double views = rows_by_view(cost.layout);
     return {0, cost.receivers * sites *
-                   ((views > 0 ? 5 : 1) * rates.site_weight +
-                    (1 + views) * kept(cost.input.knobs) * rates.gather_entry)};
+                   ((views > 0 ? 5 : 1) * kSiteWeight +
+                    (1 + views) * kept(cost.input.knobs) * kGatherEntry)};
 }
 
 }  // namespace opaline::bake

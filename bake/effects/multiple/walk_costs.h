@@ -5,6 +5,9 @@
 
 namespace opaline::bake {
 
+/// Seconds of a sample: its place (blue noise); a texel of its transform and truncation.
+inline constexpr double kPlaceSample = 1e-5, kTruncateTexel = 5.1e-9;
+
 /// Where walks are expected to start.
 SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body,
                         const Knobs& knobs);

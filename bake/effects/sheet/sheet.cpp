@@ -8,6 +8,7 @@
 
 #include "bake/plan/add_other_light.h"
 #include "bake/receivers/other_side.h"
+#include "bake/scene/coverage.h"
 #include "bake/transport/irradiance_transport.h"
 #include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
@@ -27,7 +28,8 @@ PlanEntry decide(const PlanInput& input) {
     if (!is_wanted(input.knobs, "sheet")) {
         entry.reason = "left out by --effects";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
-        entry.reason = "the thin-walled surface scatters nothing, or nearly";
+        entry.reason = sheet.clear > 0 ? "the glass scatters nothing, or nearly"
+                                       : "the thin-walled surface scatters nothing, or nearly";
     } else {
         entry.reason = "the thin-walled surface scatters light to both of its sides";
     }
@@ -35,8 +37,10 @@ PlanEntry decide(const PlanInput& input) {
 }
 
 constexpr std::array<DecisionRule, 1> kRules{
-    {{"sheet", is_thin_walled, decide, [](const PlanEntry& entry, RowLayout& layout) {
-          layout.sheet = true;
+    {{"sheet",
+      [](const PlanInput& input) { return is_thin_walled(input) && !is_wall(input.material); },
+      decide,
+      [](const PlanEntry& entry, RowLayout& layout) {
           layout.constant = layout.constant || entry.on;
       }}}};
 

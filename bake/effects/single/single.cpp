@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -10,10 +11,10 @@
 #include "bake/effects/single/rules_single.h"
 #include "bake/effects/single/single_costs.h"
 #include "bake/effects/single/single_knobs.h"
-#include "bake/effects/single/single_rates.h"
 #include "bake/effects/single/single_stage.h"
 #include "bake/effects/single/true_single.h"
 #include "bake/plan/scattered_once.h"
+#include "bake/receivers/body_points.h"
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
 #include "bake/scattering/phase_series.h"
@@ -73,7 +74,9 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
 PreparedPtr gather_batch(const EffectInputs& inputs, std::span<const BodyPoint> points,
                          std::uint64_t& rays) {
     auto batch = std::make_unique<Batch>();
-    batch->batch = gather_single_batch(stage_of(*inputs.own.prepared), inputs.bake.rays, points,
+    std::vector<BodyPoint> beside;
+    std::ranges::transform(points, std::back_inserter(beside), step_aside);
+    batch->batch = gather_single_batch(stage_of(*inputs.own.prepared), inputs.bake.rays, beside,
                                        inputs.context);
     rays += batch->batch.rows.counts.rays;
     return batch;
@@ -128,7 +131,8 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
     if (receiver.inside.normal == glm::vec3(0)) {
         return {Luminance(quadrature.lights), Luminance(quadrature.lights)};
     }
-    const Luminance once = integrate_single(quadrature, inputs.bake.rays, receiver.inside, rays);
+    const Luminance once =
+        integrate_single(quadrature, inputs.bake.rays, step_aside(receiver.inside), rays);
     return {once, once};
 }
 
@@ -214,7 +218,6 @@ EffectDescriptor describe_single(Effect id) {
                               return single_truth_work(cost,
                                                        truth_depths(cost.input.knobs, effort));
                           }},
-            .calibrate = calibrate_single,
             .typical_rows = typical_rows,
             .add_at_entry = add_at_entry,
             .warn_of_plan = warn_of_plan};

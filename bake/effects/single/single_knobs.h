@@ -59,8 +59,7 @@ inline constexpr KnobSpec kDepthSamples{
     .theory = {.label = "depth samples",
                .words = "Gauss-Legendre across the edge of a shadow; faster where light is smooth",
                .rate = -1},
-    .matters = single_knobs::looks_inside,
-    .why_idle = "no light is looked for that scatters once inside"};
+    .matters = single_knobs::looks_inside};
 
 /// Cube map for single scattering. Each texel costs one render of the body. At N = 16 single
 /// scattering errs by about 0.6 %, and it is a tenth of the light of a bright medium.
@@ -98,10 +97,7 @@ inline constexpr KnobSpec kPhaseTerms{
                .words = "Legendre coefficients of a Henyey-Greenstein function: g to the degree",
                .rate_by_cosine = single_knobs::rate_of_terms,
                .value = single_knobs::degree_of},
-    .matters = single_knobs::is_expanded,
-    .why_idle =
-        "nothing scatters once into some directions more than into others, or random walks follow "
-        "that light: one term is all"};
+    .matters = single_knobs::is_expanded};
 
 /// What the terms may leave wrong, as a share of what a half space returns (choose_terms).
 inline constexpr KnobSpec kPhaseTolerance{.name = "phase_tolerance",

@@ -27,6 +27,9 @@ double mean_thickness(const MaterialFacts& body) {
 
 // Of even light. One row for all views shows each as much as the others.
 double allowed_share(const Knobs& knobs) {
+    if (knobs.error_target > 0) {
+        return knobs.error_target;
+    }
     switch (knobs.quality) {
         case Quality::draft:
             return 0.5;
@@ -85,6 +88,8 @@ PlanEntry decide_transmission(const PlanInput& input) {
                !is_named(input.knobs, "transmission")) {
         entry.reason = "the paper has no light that crosses a body unscattered";
     } else if (!(entry.on = is_worth(entry.bound, input, entry.forced))) {
+        // Near edges some does, at any density: rows of what scatters stand for it.
+        entry.all_orders = !is_named(input.knobs, "transmission");
         entry.reason = "the medium is so dense that hardly any light crosses it unscattered";
     } else if (is_unknown) {
         entry.reason = "light may cross the body unscattered: its density varies";
@@ -117,7 +122,8 @@ PlanEntry decide_straight_views(const PlanInput& input) {
         entry.reason = std::to_string(given) + (given == 1 ? " row" : " rows") +
                        ", as --transmission-terms says";
     } else if (share > allowed_share(input.knobs)) {
-        const bool is_fine = input.knobs.quality >= Quality::production;
+        const bool is_fine =
+            input.knobs.quality >= Quality::production || input.knobs.error_target > 0;
         entry.terms = is_fine && share > kMuch ? 9 : 4;
         entry.reason = std::to_string(entry.terms) + " rows: about " + percent(share) +
                        " of even light crosses the body, and views differ";

@@ -17,6 +17,7 @@ constexpr std::array<DecisionRule, 2> kRules{
     {{"transmission", has_medium, decide_transmission,
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.constant = layout.constant || entry.on;
+          layout.fills_crossed = !entry.on && entry.all_orders;
       }},
      {"transmission.view", has_medium, decide_straight_views,
       [](const PlanEntry& entry, RowLayout& layout) {
@@ -74,8 +75,8 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& truth = static_cast<const Truth&>(prepared);
-    return see_lights_through(truth.body, truth.truth, receiver.inside, inputs.knobs.seed,
-                              receiver.key, rays);
+    return see_lights_through(truth.body, truth.truth, receiver.inside, receiver.seen,
+                              inputs.knobs.seed, receiver.key, rays);
 }
 
 // What is behind a clear body is not seen sharply.
@@ -123,7 +124,6 @@ EffectDescriptor describe_transmission(Effect id) {
                               return straight_truth_work(cost, 2.0 * truth_views(effort));
                           }},
             .held_light = formats::TermSet::unscattered,
-            .calibrate = calibrate_transmission,
             .make_look_through = make_look_through,
             .warn_of_model = warn_of_model};
 }

@@ -14,7 +14,6 @@ inline bool is_crossed(const RowLayout&, std::span<const PlanEntry> decisions) {
     return std::ranges::any_of(
         decisions, [](const PlanEntry& entry) { return entry.on && entry.name == "transmission"; });
 }
-inline constexpr const char* kWhyIdle = "no light crosses a medium unscattered";
 inline constexpr std::array<double, 3> kTermCounts{1, 4, 9};
 inline constexpr std::array<double, 5> kViewLadder{16, 32, 64, 256, 1024};
 inline constexpr std::array<double, 5> kViewDiagonal{32, 64, 128, 256, 512};
@@ -39,8 +38,7 @@ inline constexpr KnobSpec kStraightViews{
     .theory = {.label = "views through bodies",
                .words = "the width of what a view's light is spread over",
                .rate = -0.5},
-    .matters = transmission_knobs::is_crossed,
-    .why_idle = transmission_knobs::kWhyIdle};
+    .matters = transmission_knobs::is_crossed};
 
 /// Rows of a receiver that say how light that crosses a body changes with the view; 0: by medium.
 inline constexpr KnobSpec kStraightTerms{
@@ -56,7 +54,6 @@ inline constexpr KnobSpec kStraightTerms{
     .allowed = transmission_knobs::kTermCounts,
     .preset = {0, 0, 0, 0},
     .label = "K = %g through bodies",
-    .matters = transmission_knobs::is_crossed,
-    .why_idle = transmission_knobs::kWhyIdle};
+    .matters = transmission_knobs::is_crossed};
 
 }  // namespace opaline::bake

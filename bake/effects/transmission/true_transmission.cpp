@@ -68,14 +68,15 @@ std::uint64_t add_surface(const StraightTruth& truth, const StraightExit& exit, 
 }  // namespace
 
 TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& truth,
-                                const BodyPoint& point, std::uint64_t seed, std::uint32_t key,
-                                std::uint64_t& traced) {
+                                const BodyPoint& point, glm::vec3 toward, std::uint64_t seed,
+                                std::uint32_t key, std::uint64_t& traced) {
     const std::size_t lights = truth.lights.size();
     TwoEstimates estimates{Luminance(lights), Luminance(lights)};
     if (point.normal == glm::vec3(0)) {
         return estimates;
     }
-    const ViewKernel kernel(point.normal, body.eta, truth.terms, point.normal);
+    const ViewKernel kernel(point.normal, body.eta, truth.terms,
+                            toward == glm::vec3(0) ? point.normal : toward);
     const double mean = 1 - fresnel_moments(body.eta).external;
     const StraightStart start = make_straight_start(body, point, traced);
     const Frame frame = make_frame(point.normal);

@@ -20,12 +20,13 @@ struct StraightTruth {
     OtherLight::TrueView surfaces{};
 };
 
-/// Luminance toward the receiver's normal, less the factor F_t, of light that crosses the body
-/// straight, as the harmonics hold it: random views, that look at the lights themselves. No cube
-/// map, wavelets or spiral of the bake. Around exits the lights are spread over 5 degrees, because
-/// no view meets a sun's disc; so bakes do by more or less. `key`: of the random numbers.
+/// Luminance toward `toward`, unit, inside (0: the receiver's normal), less the factor F_t, of
+/// light that crosses the body straight, as the harmonics hold it: random views, that look at the
+/// lights themselves. No cube map, wavelets or spiral of the bake. Around exits the lights are
+/// spread over 5 degrees, because no view meets a sun's disc; so bakes do by more or less. `key`:
+/// of the random numbers.
 TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& truth,
-                                const BodyPoint& point, std::uint64_t seed, std::uint32_t key,
-                                std::uint64_t& traced);
+                                const BodyPoint& point, glm::vec3 toward, std::uint64_t seed,
+                                std::uint32_t key, std::uint64_t& traced);
 
 }  // namespace opaline::bake

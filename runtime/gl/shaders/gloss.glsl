@@ -258,3 +258,16 @@ vec3 glossy_mirrored(Gloss g, mat3 light_from_world, OpalineView view, vec4 open
            opaline_displayable(eval_gloss(g, light_from_world * view.normal,
                                           light_from_world * view.to_eye, view.cosine));
 }
+
+// What a metal without an image of metallic mirrors of surfaces, as mirrored_surfaces of
+// runtime/surface.cpp: `radiance` of its receivers is what they send to it.
+vec3 glossy_mirrored_surfaces(Gloss g, vec3 radiance, OpalineView view, vec4 openness) {
+    float covered = 1.0 - openness.w;
+    if (g.diffuse > 0.0 || covered < 1.0 / 64.0) {
+        return vec3(0.0);
+    }
+    vec2 table = ggx_albedo(clamp(abs(view.cosine), kLeastCosine, 1.0), g.roughness);
+    vec3 mirrors = gloss_compensation(g, table) * (table.x * g.f0 + g.f90 * table.y);
+    float blocked = 1.0 - gloss_visibility(g, view, openness);
+    return opaline_displayable(blocked / covered * (mirrors * radiance));
+}

@@ -1,4 +1,4 @@
-// Bilinear samples of 8-bit images, as runtime/texture.cpp has them. Codes and a table instead of an
+// Bilinear or nearest samples of 8-bit images, as runtime/texture.cpp has them. Codes and a table instead of an
 // sRGB format: hardware may filter before or after decoding and at its own precision; the CPU decodes
 // exactly and filters afterwards. DATA_IN_TEXTURES, here and elsewhere: contexts without storage
 // buffers in this stage keep arrays in textures.
@@ -38,8 +38,11 @@ float reduce_coordinate(float t, int mode) {
 }
 
 vec3 sample_image(usampler2D image, vec2 uv, ivec2 wrap, bool is_srgb) {
+    bvec2 is_nearest = notEqual(wrap & WRAP_NEAREST, ivec2(0));
+    wrap &= ~WRAP_NEAREST;
     vec2 at = vec2(reduce_coordinate(uv.x, wrap.x), reduce_coordinate(uv.y, wrap.y)) *
-                  vec2(textureSize(image, 0)) - 0.5;
+              vec2(textureSize(image, 0));
+    at = mix(at - 0.5, floor(at), is_nearest);
     vec2 low = floor(at), t = at - low;
     ivec2 i = ivec2(low);
     return mix(mix(image_texel(image, i, wrap, is_srgb),

@@ -80,10 +80,14 @@ layout(location = 26) uniform OpalineTurnedLight turned_light;
 // As shade_surface of runtime/surface.cpp.
 void main() {
 #ifdef HOLES
+    float met_cosine = 1.0;
+#ifdef CLEAR_HOLE
+    met_cosine = abs(dot(opaline_unit_or_zero(v_normal), opaline_unit_or_zero(v_to_eye)));
+#endif
 #ifdef HAS_TEXCOORD
-    if (!sees_surface(v_texcoord)) discard;
+    if (!sees_surface(v_texcoord, met_cosine)) discard;
 #else
-    if (!sees_surface(vec2(0.0))) discard;
+    if (!sees_surface(vec2(0.0), met_cosine)) discard;
 #endif
 #endif
     vec3 base_color = v_base_color;
@@ -111,9 +115,13 @@ void main() {
     radiance = opaline_translucent(radiance, base_color, view, eta);
 #elif defined(GLOSS)
     Gloss g = make_gloss(f0_f90, gloss_factors(), base_color);
+    vec3 received = radiance;
     radiance = glossy_diffuse(g, radiance, base_color, view);
     if (has_specular != 0u) {
         radiance += glossy_mirrored(g, light_from_world, view, v_open);
+#ifndef GLOSS_TEXTURED
+        radiance += glossy_mirrored_surfaces(g, received, view, v_open);
+#endif
     }
 #else
     radiance = opaline_diffuse(radiance, base_color);

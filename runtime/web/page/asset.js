@@ -22,6 +22,7 @@ const Asset = (() => {
       firstRow: w[10], firstBandRow: w[11], firstCode: large(w, 12),
       shading: ["", "diffuse", "translucent", "sheet"][w[14]], image: image(w[15]),
       wrap: [w[16], w[17]], isDoubleSided: (w[18] & 1) !== 0, isSeparate: (w[18] & 2) !== 0,
+      showsBack: w[14] !== 1 || (w[18] & 1) !== 0,
       eta: f[19], roughness: -1, gloss: null, hole: null, normalMap: null, own: null, blocks: [] }));
   }
 
@@ -89,7 +90,8 @@ const Asset = (() => {
     readGloss(arrays.get("gloss")).forEach((gloss, p) => { primitives[p].gloss = gloss; });
     records(arrays.get("holes"), 8, (w, f) => {
       primitives[w[0]].hole = { image: image(w[1]), wrap: [w[2], w[3]], alpha: f[4], cutoff: f[5],
-                                mode: w[6] };
+                                mode: w[6],
+                                clear: w[7] === 0 ? null : [Light.kFloats[w[7] & 0xffff], Light.kFloats[w[7] >>> 16]] };
     });
     records(arrays.get("normal maps"), 8, (w, f) => {
       const halves = [w[5], w[5] >>> 16, w[6], w[6] >>> 16, w[7], w[7] >>> 16].map(x => x & 0xffff);

@@ -37,8 +37,19 @@ const Camera = (() => {
                    fov: 32 };
     const square = withEye(view, Array.from(camera.subarray(0, 3)));
     const half = Math.tan(radians(16));
-    const narrow = Math.atan(half * Math.min(aspect, 1));
-    return { ...square, distance: square.distance * Math.sin(radians(16)) / Math.sin(narrow) };
+    const narrow = Math.sin(Math.atan(half * Math.min(aspect, 1)));
+    const [ball, radius, height] = camera.subarray(11, 14);
+    if (!(ball > 0)) return { ...square, distance: square.distance * Math.sin(radians(16)) / narrow };
+    let least = 0;  // at which the object's cylinder is in frame
+    const c = Math.cos(radians(square.elevation)), s = Math.sin(radians(square.elevation));
+    for (let i = 0; i < 64; ++i) {
+      const x = radius * Math.sin(i * Math.PI / 32), toward = radius * Math.cos(i * Math.PI / 32);
+      for (const h of [height, -height]) {
+        const y = h * c - toward * s, z = h * s + toward * c;
+        least = Math.max(least, z + Math.abs(x) / (half * aspect), z + Math.abs(y) / half);
+      }
+    }
+    return { ...square, distance: 1.04 * Math.min(Math.max(least, ball), ball / narrow) };
   }
 
   function nearPlane(camera, eye) {

@@ -13,7 +13,7 @@ const Draw = (() => {
   }
 
   // Interface: setLight(light), project(turn, time), relight(projected, colors), resize(width, height),
-  // drawTile(...), present(...), readPixels(...).
+  // drawTile(...), chooseExposure(...), present(...), readPixels(...).
   function make(canvas, asset) {
     const gl = canvas.getContext("webgl2", { alpha: false, antialias: false, depth: false });
     if (gl === null) throw new Error("this browser has no WebGL 2: use a current one, or allow it " +
@@ -74,7 +74,7 @@ const Draw = (() => {
         own_light: own ? own.radiance.map((x, k) => x * colors[own.emitter][k]) : [0, 0, 0],
         own_wrap: own?.wrap ?? [0, 0],
         hole: hole ? [hole.alpha, hole.cutoff, hole.mode] : [1, 0, 1],
-        hole_wrap: hole?.wrap ?? [0, 0],
+        hole_wrap: hole?.wrap ?? [0, 0], hole_clear: hole?.clear ?? [0, 0],
         normal_wrap: normalMap?.wrap ?? [0, 0], normal_scale: normalMap?.scale ?? 1 };
     }
 
@@ -97,11 +97,14 @@ const Draw = (() => {
         first_sample: [grid.firstColumn, grid.firstRow] };
       gl.enable(gl.DEPTH_TEST);
       gl.bindVertexArray(objects.array);
+      gl.frontFace(gl.CW);  // y points down
       for (const { primitive, program } of objects.surfaces) {
+        (primitive.showsBack ? gl.disable : gl.enable).call(gl, gl.CULL_FACE);
         gl.useProgram(program.name);
         setUniforms(gl, program, { ...shared, ...lit.turnedOf(primitive), ...surfaceUniforms(primitive, colors) });
         gl.drawElements(gl.TRIANGLES, primitive.indices, gl.UNSIGNED_INT, 4 * primitive.firstIndex);
       }
+      gl.disable(gl.CULL_FACE);
       gl.bindVertexArray(null);
       gl.disable(gl.DEPTH_TEST);
     }
@@ -196,13 +199,14 @@ const Draw = (() => {
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
 
-    // A tile of the picture.
-    function drawTile(frame, { turn, colors }, tile) {
+    // A tile of the picture; black behind the asset, but for a cloud layer, where nothing stands behind it.
+    function drawTile(frame, { turn, colors }, tile, behind = true) {
       const { x, y, width, height, across } = tile, grid = gridOf(tile, size);
       gl.bindFramebuffer(gl.FRAMEBUFFER, targets.samples.frame);
       viewSamples(grid);
       gl.clear(gl.DEPTH_BUFFER_BIT);
-      if (layer === null) drawBackground(frame, turn, grid);
+      if (!behind) gl.clearBufferfv(gl.COLOR, 0, [0, 0, 0, 1]);
+      else if (layer === null) drawBackground(frame, turn, grid);
       drawSurfaces(frame, turn, colors, grid);
       if (layer !== null) drawLayer(frame, turn, grid, tile);
       gl.bindFramebuffer(gl.FRAMEBUFFER, targets.filtered.frame);
@@ -212,6 +216,17 @@ const Draw = (() => {
       gl.bindFramebuffer(gl.READ_FRAMEBUFFER, targets.filtered.frame);
       gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, targets.picture.frame);
       gl.blitFramebuffer(0, 0, width, height, x, y, x + width, y + height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    }
+
+    // That a picture of that size asks for. The next one needs resize().
+    function chooseExposure(frame, seen, width, height) {
+      const [columns, rows] = Exposure.sizeOf(width, height);
+      resize(columns, rows, columns, rows, 1);
+      drawTile(frame, seen, whole(columns, rows), layer !== null);
+      const pixels = new Float32Array(4 * columns * rows);
+      gl.bindFramebuffer(gl.FRAMEBUFFER, targets.filtered.frame);
+      gl.readPixels(0, 0, columns, rows, gl.RGBA, gl.FLOAT, pixels);
+      return Exposure.choose(pixels);
     }
 
     // The picture to the canvas, or to `target` of the picture's size.
@@ -237,7 +252,7 @@ const Draw = (() => {
     }
 
     const { setLight, project, relight } = lit;
-    return { setLight, project, relight, resize, drawTile, present, readPixels };
+    return { setLight, project, relight, resize, drawTile, chooseExposure, present, readPixels };
   }
 
   return { make, whole };

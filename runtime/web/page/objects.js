@@ -54,14 +54,15 @@ const Objects = (() => {
       TEXTURED: primitive.image !== null, TRANSLUCENT: isTranslucent, MIRRORING: mirrors,
       GLOSS: gloss, GLOSS_TEXTURED: gloss?.image != null, GLOWS: own,
       OWN_TEXTURED: own?.image != null, HOLES: hole, HOLE_IMAGE: hole?.image != null,
-      HOLE_VERTICES: hole && hasAlpha, HAS_TEXCOORD: hasImage, HAS_VIEW: isTranslucent || gloss || normalMap,
+      HOLE_VERTICES: hole && hasAlpha, HAS_TEXCOORD: hasImage, 
+      HAS_VIEW: isTranslucent || gloss || normalMap || hole?.clear, CLEAR_HOLE: hole?.clear,
       NORMAL_MAP: normalMap, TURNED: normalMap && (shading === "diffuse" || isTurnedSheet(primitive)),
       TWO_SIDES: isTurnedSheet(primitive),
       HAS_OPENNESS: mirrors || gloss, SHEET: shading === "sheet", OPAQUE: shading === "diffuse",
       SEPARATE: primitive.isSeparate };
     const defines = Object.entries(words).filter(([, wanted]) => wanted).map(([word]) => [word, ""]);
     defines.push(["RADIANCE_OF_ROWS", ""], ["FORWARD_DEPTH", ""], ["TERMS", terms],
-                 ["HARMONICS", harmonics], ["WRAP_CLAMP", 1], ["WRAP_MIRROR", 2]);
+                 ["HARMONICS", harmonics], ["WRAP_CLAMP", 1], ["WRAP_MIRROR", 2], ["WRAP_NEAREST", 4]);
     for (const word of ["LOBE_TAPS", "ALBEDO_ROWS", "ALBEDO_COLUMNS", "NARROW_ROUGHNESS",
                         "WIDE_ROUGHNESS"]) {
       defines.push([word, c[word]]);

@@ -10,6 +10,7 @@ opaline.page = (() => {
   const lights = new Map();  // by number, as read
   let asset, draw, state, home;
   let drawn = 0;             // of the current picture: a sample of all pixels, then tiles
+  let chosen = null;         // exposure that the light shown asks for [EV]; null: not known yet
   let shown = { light: -1, turn: NaN, time: NaN, colors: null }, projected = null;
   let requested = false, moved = 0, lastFrame = 0, coarseness = 1;
 
@@ -49,7 +50,7 @@ opaline.page = (() => {
     }
     const light = Math.max(0, opaline.lights.indexOf(given.get("light")));
     return { view, light, turn: number("rotate", 0, -1e6, 1e6),
-             time: hasTime() ? number("time", 0, -1e9, 1e9) : 0, exposure: number("exposure", 0, -64, 64), colors };
+             time: hasTime() ? number("time", 0, -1e9, 1e9) : 0, exposure: number("exposure", null, -64, 64), colors };
   }
 
   // So that the address can be kept or passed on.
@@ -59,9 +60,10 @@ opaline.page = (() => {
     addressTimer = setTimeout(() => {
       const { view, light, turn, time, exposure, colors } = state, digits = x => String(+x.toPrecision(6));
       const parts = new URLSearchParams({
-        light: opaline.lights[light], rotate: digits(turn), exposure: digits(exposure),
+        light: opaline.lights[light], rotate: digits(turn),
         azimuth: digits(view.azimuth), elevation: digits(view.elevation),
         distance: digits(view.distance), target: view.target.map(digits).join(",") });
+      if (exposure !== null) parts.set("exposure", digits(exposure));
       if (time !== 0) parts.set("time", digits(time));
       if (view.fov !== home.fov) parts.set("fov", digits(view.fov));
       colors.forEach((color, e) => {
@@ -106,17 +108,32 @@ opaline.page = (() => {
     if (shown.light !== light) draw.setLight(lights.get(light));
     const isNew = shown.light !== light || shown.turn !== turn || shown.time !== time;
     if (isNew) projected = draw.project(turn * Math.PI / 180, time);
-    if (isNew || shown.colors !== colors) draw.relight(projected, colors);
+    if (isNew || shown.colors !== colors) {
+      draw.relight(projected, colors);
+      chosen = null;
+    }
     shown = { light, turn, time, colors };
     return true;
+  }
+
+  const frameOf = (width, height) => Camera.frame(state.view, asset.camera, width / height);
+  const seenBy = () => ({ turn: state.turn * Math.PI / 180, colors: state.colors });
+
+  // Given, or chosen from the picture once light has changed: turning the view changes none.
+  function exposureOf(width, height) {
+    if (state.exposure !== null) return state.exposure;
+    if (chosen === null) {
+      chosen = draw.chooseExposure(frameOf(width, height), seenBy(), width, height);
+      showExposure();
+    }
+    return chosen;
   }
 
   // Step 0: one sample of each pixel; then tiles, each with as many samples as that.
   function drawStep(step, width, height) {
     const tileWidth = Math.ceil(width / kAcross), tileHeight = Math.ceil(height / kAcross);
     draw.resize(width, height, tileWidth, tileHeight, kAcross);
-    const frame = Camera.frame(state.view, asset.camera, width / height);
-    const seen = { turn: state.turn * Math.PI / 180, colors: state.colors };
+    const frame = frameOf(width, height), seen = seenBy();
     if (step === 0) {
       draw.drawTile(frame, seen, Draw.whole(width, height));
       return;
@@ -155,12 +172,13 @@ opaline.page = (() => {
       drawn = 0;
     }
     try {
+      const exposure = exposureOf(width, height);
       // Tiles wait until nothing changes.
       if (drawn === 0 || (!isMoving && drawn <= kTiles.length)) {
         drawStep(drawn, Math.ceil(width / coarse), Math.ceil(height / coarse));
         ++drawn;
       }
-      draw.present(state.exposure);
+      draw.present(exposure);
     } catch (error) {
       fail(error);
       return;
@@ -173,8 +191,9 @@ opaline.page = (() => {
   async function takePicture(width, height) {
     await lightOf(state.light);
     relight();
+    const exposure = exposureOf(width, height);
     for (let step = 1; step <= kTiles.length; ++step) drawStep(step, width, height);
-    const pixels = draw.readPixels(state.exposure);
+    const pixels = draw.readPixels(exposure);
     drawn = 0;
     request();
     return { width, height, pixels };
@@ -301,7 +320,7 @@ opaline.page = (() => {
     at("time").addEventListener("input", () => change({ time: at("time").valueAsNumber }));
     at("exposure").addEventListener("input", () => change({ exposure: at("exposure").valueAsNumber }));
     at("reset").addEventListener("click", () => {
-      change({ view: home, turn: 0, time: 0, exposure: 0, colors: opaline.emitters.map(() => [1, 1, 1]) });
+      change({ view: home, turn: 0, time: 0, exposure: null, colors: opaline.emitters.map(() => [1, 1, 1]) });
     });
     at("save").addEventListener("click", () => savePicture().catch(fail));
     if (window.innerWidth < 640) at("panel").open = false;
@@ -314,13 +333,18 @@ opaline.page = (() => {
     at("turn-value").textContent = `${Math.round(turn)}°`;
     at("time").value = state.time;
     at("time-value").textContent = labelOfTime(state.time);
-    at("exposure").value = state.exposure;
-    at("exposure-value").textContent = `${state.exposure > 0 ? "+" : ""}${state.exposure.toFixed(1)} EV`;
+    showExposure();
     state.colors.forEach((color, e) => {
       const step = stepOf(color);
       at(`slider-${e}`).value = step;
       at(`emitter-${e}`).textContent = `× ${+Math.max(...color).toPrecision(2)}`;
     });
+  }
+
+  function showExposure() {
+    const exposure = state.exposure ?? chosen ?? 0;
+    at("exposure").value = exposure;
+    at("exposure-value").textContent = `${exposure > 0 ? "+" : ""}${exposure.toFixed(1)} EV`;
   }
 
   async function start() {

@@ -1,5 +1,5 @@
-// From radiance to the screen: exposure, Khronos PBR Neutral, sRGB, as runtime/picture/tone_map.cpp. Row 0 of the
-// picture is its top.
+// From radiance to the screen: exposure, tone map, sRGB, as runtime/picture/tone_map.cpp. Row 0 of the picture is its
+// top.
 uniform sampler2D picture;
 uniform float gain;
 uniform vec2 scale;  // texels of the picture a pixel of the target
@@ -11,9 +11,10 @@ vec3 tone_map(vec3 c) {
     c -= least < 0.08 ? least - least * least / 0.16 : 0.04;
     float peak = max(c.r, max(c.g, c.b));
     if (peak <= 0.76) return c;
-    float new_peak = 1.0 - 0.24 * 0.24 / (peak + 0.24 - 0.76);
+    vec3 compressed = mix(c, 1.0 - 0.24 * 0.24 / (max(c, 0.76) + 0.24 - 0.76), greaterThan(c, vec3(0.76)));
+    float new_peak = max(compressed.r, max(compressed.g, compressed.b));
     float keep = 1.0 / (0.15 * (peak - new_peak) + 1.0);
-    return clamp(new_peak + keep * (c / peak * new_peak - new_peak), 0.0, 1.0);
+    return clamp(new_peak + keep * (compressed - new_peak), 0.0, 1.0);
 }
 
 float encode(float linear) {

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 
+#include "bake/emitters/triangle_clusters.h"
 #include "tests/bake/emitters/lamp_scenes.h"
 #include "tests/bake/path_differentials/random_inputs.h"
 
@@ -173,6 +175,24 @@ TEST(SurfaceElements, TrianglesWithoutAreaTakeNothing) {
     for (const glm::vec3& irradiance : layout.join(even_deposits(layout, 1)).irradiance) {
         EXPECT_EQ(irradiance, glm::vec3(0));
     }
+}
+
+TEST(TriangleClusters, TrianglesInOnePlaceStandInTheListOnceEach) {
+    formats::Primitive pile;
+    pile.position = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    for (int i = 0; i < 1000; ++i) {
+        pile.index.insert(pile.index.end(), {0, 1, 2});
+    }
+    const TriangleClusters clusters = cluster_triangles(pile);
+    std::vector<std::uint32_t> order = clusters.order, all(1000);
+    std::ranges::sort(order);
+    std::iota(all.begin(), all.end(), 0u);
+    EXPECT_EQ(order, all);
+    std::uint32_t count = 0;
+    for (const TriangleCluster& chart : clusters.charts) {
+        count += chart.count;
+    }
+    EXPECT_EQ(count, 1000u);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "bake/encode/pack_holes.h"
+#include "bake/encode/pack_asset.h"
 
 #include <gmock/gmock.h>
 

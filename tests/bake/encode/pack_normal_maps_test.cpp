@@ -1,4 +1,4 @@
-#include "bake/encode/pack_normal_maps.h"
+#include "bake/encode/pack_asset.h"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,7 @@
 #include <utility>
 
 #include "bake/example/example_scenes.h"
-#include "bake/example/polygonize.h"
-#include "bake/example/remesh.h"
+#include "bake/example/solid_mesh.h"
 
 namespace opaline::bake {
 namespace {
@@ -137,7 +136,7 @@ std::pair<double, double> height_range(const TriangleMesh& mesh) {
 }
 
 TriangleMesh make_ball(double radius) {
-    const Field ball = [=](const glm::dvec3& p) { return glm::length(p) - radius; };
+    const ScalarField ball = [=](const glm::dvec3& p) { return glm::length(p) - radius; };
     TriangleMesh mesh =
         polygonize(ball, {glm::dvec3(-radius - 2.0), glm::dvec3(radius + 2.0)}, 0.9);
     remesh(ball, RemeshOptions{}, mesh);
@@ -282,7 +281,7 @@ TEST(Remesh, PutsABallOnItsSphere) {
 
 TEST(Polygonize, StaysManifoldWhereTheSolidIsThinnerThanTheGrid) {
     // Two sheets closer than a cell, and a rod along a cell diagonal: every ambiguous case occurs.
-    const Field field = [](const glm::dvec3& p) {
+    const ScalarField field = [](const glm::dvec3& p) {
         const glm::dvec3 d = glm::normalize(glm::dvec3(1.0, 1.1, 0.9));
         const double rod = glm::length(p - glm::dot(p, d) * d) - 0.55;
         const double sheets = std::abs(std::abs(p.x + 0.3 * p.y - 0.2 * p.z) - 0.7) - 0.45;

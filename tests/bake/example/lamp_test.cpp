@@ -1,5 +1,5 @@
 // Parts of the example `lamp`.
-#include "bake/example/lamp.h"
+#include "bake/example/scene_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -20,9 +20,9 @@ TEST(LampExample, ThickShadeIsClosed) {
     double volume = 0;
     const TriangleMesh shade = make_thick_shade({}, 5);
     for (const Triangle& t : shade.triangles) {
-        volume += glm::dot(shade.position[t[0]],
-                           glm::cross(shade.position[t[1]], shade.position[t[2]])) /
-                  6;
+        volume +=
+            glm::dot(shade.position[t[0]], glm::cross(shade.position[t[1]], shade.position[t[2]])) /
+            6;
     }
     // 2 pi times the mean radius times the area of the profile; 48 chords are a little shorter.
     EXPECT_NEAR(volume / (2 * 3.14159265 * 82.5 * 5 * 120), 0.997, 0.003);

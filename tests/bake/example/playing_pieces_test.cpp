@@ -1,5 +1,5 @@
 // Parts of the example `playing-pieces`.
-#include "bake/example/playing_pieces.h"
+#include "bake/example/scene_parts.h"
 
 #include <gtest/gtest.h>
 

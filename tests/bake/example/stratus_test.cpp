@@ -1,4 +1,4 @@
-#include "bake/example/stratus.h"
+#include "bake/example/scene_parts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numeric>
 #include <vector>
 
 #include "bake/base/rng.h"
@@ -128,6 +131,39 @@ TEST(BounceTree, NodesAreAsLargeAsTheFootprint) {
         // A square of area a has a mean squared distance of a / 6; nodes have a / 4 to a.
         EXPECT_LT(squares, 0.25 * footprint);
         EXPECT_GT(squares, footprint / 40);
+    }
+}
+
+// Cubes side by side, and soups of triangles an ulp apart: the tree ends, with every scatterer in
+// it.
+TEST(BounceTree, ScatterersAtOnePlaceOrAnUlpApartEachHaveALeaf) {
+    const float next = std::nextafter(1.0f, 2.0f);
+    std::vector<std::vector<float>> places;
+    places.emplace_back(100, 1.0f);
+    places.emplace_back(100, 1.0f).back() = next;
+    places.emplace_back(100, next).front() = 1.0f;
+    places.emplace_back(100, -1.0f).back() = -std::nextafter(1.0f, 0.0f);
+    places.emplace_back(100, 0.0f).back() = std::numeric_limits<float>::denorm_min();
+    places.emplace_back(2000, 0.0f);
+    for (int k = 0; k < 250; ++k) {
+        places.back()[static_cast<std::size_t>(k)] = std::ldexp(1.0f, 100 - k);
+    }
+    for (const std::vector<float>& along : places) {
+        for (glm::length_t axis = 0; axis < 3; ++axis) {
+            std::vector<Scatterer> all(along.size());
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                all[i].position = glm::vec3(1);
+                all[i].position[axis] = along[i];
+                all[i].normal = {0, 1, 0};
+            }
+            const BounceTree tree(all, 1, 3);
+            EXPECT_EQ(tree.size(), 2 * all.size() - 1);
+            std::vector<std::uint32_t> leaves = tree.neighbours(), each(all.size());
+            std::iota(each.begin(), each.end(), 0u);
+            std::ranges::sort(leaves);
+            EXPECT_EQ(leaves, each) << axis;
+            EXPECT_LT(tree.find({1, 1, 1}, {0, false, {0, 1, 0}}, 0), tree.size());
+        }
     }
 }
 

@@ -51,5 +51,14 @@ TEST(EvenChoice, ChosenPointsKeepTheirDistance) {
     EXPECT_LT(close, 20u);
 }
 
+TEST(EvenChoice, OfPointsAtOnePlaceEachComesOnce) {
+    const std::vector<SidePoint> points(1000, {{1, 1, 1}, {0, false, {0, 1, 0}}});
+    for (const std::size_t count : {1u, 7u, 999u, 1000u}) {
+        const auto chosen = choose_evenly(points, count);
+        EXPECT_EQ(chosen.size(), count);
+        EXPECT_EQ(std::set<std::uint32_t>(chosen.begin(), chosen.end()).size(), count);
+    }
+}
+
 }  // namespace
 }  // namespace opaline::bake

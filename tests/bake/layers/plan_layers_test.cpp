@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "bake/layers/layer_tables.h"
+#include "bake/layers/layer_work.h"
 #include "bake/slab/low_orders.h"
 #include "bake/slab/solve_slab.h"
 #include "tests/bake/layers/layer_support.h"
@@ -80,6 +81,17 @@ TEST(PlanLayers, ThickLayerHasEverythingAndItsSubjectIsTheLayer) {
 }
 
 // Layers without the forward peak lose less light than the bound, which counts the peak as lost.
+TEST(PlanLayers, CountsAndBoundsFollowFromTheLargestThicknessAlone) {
+    const formats::Scene all = layer_scene(100);
+    formats::Scene largest = all;
+    largest.layers[0].thickness.resize(1);
+    EXPECT_EQ(bound_layer(largest.layers[0]).cloud, bound_layer(all.layers[0]).cloud);
+    const LayerLayout layout{0, true, true, false};
+    EXPECT_EQ(count_layer_work(largest.layers[0], layout, {}).bytes,
+              count_layer_work(all.layers[0], layout, {}).bytes);
+    EXPECT_EQ(layer_memory(largest.layers[0], {}), layer_memory(all.layers[0], {}));
+}
+
 TEST(PlanLayers, CloudScattersLessThanItsBoundAndAThirdOfItAtLeast) {
     for (const float thickness : {0.01f, 3.0f, 100.0f}) {
         const formats::Scene scene = layer_scene(thickness);

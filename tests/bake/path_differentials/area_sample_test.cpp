@@ -38,21 +38,16 @@ TEST(AreaSample, TrianglesAreDerivativesAndSpanTheirArea) {
     }
 }
 
-TEST(AreaSample, ParallelogramsAndCellsSpanTheirArea) {
+TEST(AreaSample, ParallelogramsHaveTheirEdgesAsColumns) {
     tests::RandomInputs random(20);
-    tests::AreaErrors cells;
     for (int i = 0; i < tests::kRandomCases; ++i) {
-        const glm::dvec3 N = random.unit(), e1 = random.vector(), e2 = random.vector();
-        const double area = random.uniform(1e-6, 10), u = random.uniform(), v = random.uniform();
-        const AreaSample cell = cell_of_area({1, 2, 3}, N, area);
-        cells.add(cell.dP_du, cell.dP_dv, 1 / area);
-        EXPECT_LT(std::abs(glm::dot(N, cell.dP_du)), 1e-14 * std::sqrt(area) + 1e-300);
+        const glm::dvec3 e1 = random.vector(), e2 = random.vector();
+        const double u = random.uniform(), v = random.uniform();
         const AreaSample at = sample_parallelogram({1, 2, 3}, e1, e2, u, v);
         EXPECT_EQ(at.dP_du, e1);
         EXPECT_EQ(at.dP_dv, e2);
         EXPECT_EQ(at.P, glm::dvec3(1, 2, 3) + u * e1 + v * e2);
     }
-    EXPECT_LT(cells.largest, 1e-12);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "bake/path_differentials/camera_start.h"
+#include "tests/bake/path_differentials/camera_start.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

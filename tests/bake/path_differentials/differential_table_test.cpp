@@ -2,21 +2,21 @@
 
 #include "bake/path_differentials/area_sample.h"
 #include "bake/path_differentials/axis_frame.h"
-#include "bake/path_differentials/camera_start.h"
-#include "bake/path_differentials/environment_sample.h"
-#include "bake/path_differentials/flight_sample.h"
 #include "bake/path_differentials/footprint.h"
 #include "bake/path_differentials/lobe.h"
-#include "bake/path_differentials/path_gradient.h"
 #include "bake/path_differentials/smooth_event.h"
 #include "bake/path_differentials/steps.h"
 #include "bake/path_differentials/surface_shape.h"
-#include "bake/path_differentials/transfer.h"
 #include "bake/path_differentials/visible_normal.h"
 #include "bake/scene/texture_taps.h"
+#include "tests/bake/path_differentials/camera_start.h"
+#include "tests/bake/path_differentials/environment_sample.h"
+#include "tests/bake/path_differentials/flight_sample.h"
 #include "tests/bake/path_differentials/glossy_chain.h"
+#include "tests/bake/path_differentials/path_gradient.h"
 #include "tests/bake/path_differentials/primal.h"
 #include "tests/bake/path_differentials/table_case.h"
+#include "tests/bake/path_differentials/transfer.h"
 
 namespace opaline::bake {
 namespace {
@@ -271,7 +271,7 @@ NamedValues gradients(const DifferentialCase& row) {
     return {{"ln_cos", listed(std::log(glm::dot(N, D)))},
             {"ln_phong", listed(S * std::log(c))},
             {"ln_hg", listed(ln_hg)},
-            {"ln_ggx", listed(tests::ln_microfacet<double>(N, R, D, alpha, false))},
+            {"ln_ggx", listed(tests::ln_microfacet<double>(N, R, D, alpha))},
             {"dln_cos_j", listed(dln_cosine(N, D, dN, dD))},
             {"dln_phong_j", listed(dln_power(R, D, S, dR, dD))},
             {"dln_hg_j", listed(dln_henyey_greenstein(g, c, dc))},

@@ -1,4 +1,4 @@
-#include "bake/path_differentials/environment_sample.h"
+#include "tests/bake/path_differentials/environment_sample.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

@@ -7,15 +7,6 @@
 namespace opaline::bake {
 namespace {
 
-double shoelace(const std::vector<glm::dvec2>& corners) {
-    double area = 0;
-    for (std::size_t i = 0; i < corners.size(); ++i) {
-        const glm::dvec2 a = corners[i], b = corners[(i + 1) % corners.size()];
-        area += (a.x * b.y - a.y * b.x) / 2;
-    }
-    return area;
-}
-
 glm::dvec2 random_normal(tests::RandomInputs& random) {
     const double r = std::sqrt(-2 * std::log(1 - random.uniform()));
     const double phi = 2 * std::numbers::pi * random.uniform();
@@ -29,33 +20,6 @@ std::vector<glm::dvec2> random_set(tests::RandomInputs& random, std::size_t coun
         v = std::exp(0.7 * random_normal(random).x) * random_normal(random);
     }
     return vectors;
-}
-
-TEST(Footprint, AreaIsThatOfThePolygon) {
-    tests::RandomInputs random(28);
-    for (int i = 0; i < 1000; ++i) {
-        const auto vectors = random_set(random, 2 + static_cast<std::size_t>(i) % 9);
-        const double area = polygon_area(vectors);
-        EXPECT_NEAR(shoelace(footprint_polygon(vectors)), area, 1e-12 * area);
-    }
-}
-
-// Every sum of +-v_j / 2 lies inside, the corners are such sums.
-TEST(Footprint, PolygonHoldsAllSums) {
-    tests::RandomInputs random(29);
-    const auto vectors = random_set(random, 6);
-    const auto corners = footprint_polygon(vectors);
-    for (unsigned signs = 0; signs < 64; ++signs) {
-        glm::dvec2 sum(0);
-        for (std::size_t j = 0; j < 6; ++j) {
-            sum += ((signs >> j & 1u) != 0 ? 0.5 : -0.5) * vectors[j];
-        }
-        for (std::size_t i = 0; i < corners.size(); ++i) {
-            const glm::dvec2 edge = corners[(i + 1) % corners.size()] - corners[i];
-            const glm::dvec2 to = sum - corners[i];
-            EXPECT_GT(edge.x * to.y - edge.y * to.x, -1e-12);
-        }
-    }
 }
 
 struct RatioStatistics {
@@ -148,7 +112,6 @@ TEST(Footprint, WithoutVectorsIsAPoint) {
     for (const std::vector<glm::dvec2>& none :
          {std::vector<glm::dvec2>{}, {glm::dvec2(0), glm::dvec2(0)}}) {
         EXPECT_EQ(polygon_area(none), 0);
-        EXPECT_TRUE(footprint_polygon(none).empty());
         for (const FootprintPair& pair :
              {split_pair(none), best_pair(none), polygon_pair(none), rms_pair(none)}) {
             EXPECT_EQ(pair.A, glm::dvec2(0));
@@ -172,19 +135,6 @@ TEST(Footprint, ParallelColumnsAreALine) {
 TEST(Footprint, ThinOnesKeepTheDigitsOfTheirWidth) {
     const std::vector<glm::dvec2> thin{{1, 0}, {1, 1e-9}};
     EXPECT_NEAR(pair_extent(rms_pair(thin)).minor / (1e-9 / std::sqrt(2.0)), 1, 1e-12);
-}
-
-// A box and a skewed prism by their volume; the moments of a box are its edges.
-TEST(Footprint, VolumesAreSumsOfDeterminants) {
-    const std::vector<glm::dvec3> box{{2, 0, 0}, {0, 3, 0}, {0, 0, 0.5}};
-    EXPECT_NEAR(footprint_volume(box), 3, 1e-15);
-    EXPECT_LT(glm::length(rms_extents(box) - glm::dvec3(3, 2, 0.5)), 1e-14);
-    auto more = box;
-    more.push_back({1, 0, 0});  // the box grows to 3 x 3 x 0.5
-    EXPECT_NEAR(footprint_volume(more), 4.5, 1e-14);
-    const std::vector<glm::dvec3> flat{{1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-    EXPECT_EQ(footprint_volume(flat), 0);
-    EXPECT_NEAR(rms_extents(flat).z, 0, 1e-8);
 }
 
 }  // namespace

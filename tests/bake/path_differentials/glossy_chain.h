@@ -3,14 +3,14 @@
 #include <optional>
 
 #include "bake/path_differentials/axis_frame.h"
-#include "bake/path_differentials/camera_start.h"
 #include "bake/path_differentials/lobe.h"
-#include "bake/path_differentials/path_gradient.h"
 #include "bake/path_differentials/smooth_event.h"
 #include "bake/path_differentials/surface_shape.h"
-#include "bake/path_differentials/transfer.h"
+#include "tests/bake/path_differentials/camera_start.h"
+#include "tests/bake/path_differentials/path_gradient.h"
 #include "tests/bake/path_differentials/primal.h"
 #include "tests/bake/path_differentials/table_case.h"
+#include "tests/bake/path_differentials/transfer.h"
 
 namespace opaline::tests {
 

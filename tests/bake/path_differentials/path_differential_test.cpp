@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "bake/path_differentials/area_sample.h"
-#include "bake/path_differentials/flight_sample.h"
 #include "bake/path_differentials/steps.h"
 #include "bake/path_differentials/surface_shape.h"
 #include "tests/bake/path_differentials/event_check.h"
@@ -48,7 +47,9 @@ FollowedChain follow(const tests::GlossyChain& chain, const tests::ChainPoint& x
                                           step,
                                           step,
                                           sphere.N});
-    EXPECT_TRUE(add_cosine(path, sphere.N, D, sphere.dN_dP));
+    for (DifferentialColumn& column : path.columns()) {
+        column.dlnW += dln_cosine(sphere.N, D, sphere.dN_dP * column.dP, column.dD);
+    }
     const double down =
         tests::plane_distance<double>(on_sphere, D, kUp, glm::dvec3(0, chain.floor, 0));
     move_to_surface(path, D, kUp, down);
@@ -237,12 +238,6 @@ TEST(PathDifferential, FacetsTurnWithTheirSurface) {
 
 // Hard case: 0 / 0 where the contribution is 0. The path ends before it is asked for a footprint.
 TEST(PathDifferential, WithoutContributionEnds) {
-    PathDifferential path;
-    add_variable(path, {kStill, {0, 1, 0}, 0, 1});
-    for (const double c : {0.0, -0.5}) {
-        EXPECT_FALSE(add_cosine(path, kUp, {std::sqrt(1 - c * c), c, 0}, glm::dmat3(0.0)));
-        EXPECT_TRUE(std::isfinite(path.column[0].dlnW));
-    }
     // Some facets that are seen from near the horizon reflect to below it.
     tests::RandomInputs random(44);
     int ended = 0;
@@ -282,31 +277,6 @@ TEST(PathDifferential, RefractionIsTheEventOfEachColumn) {
     refract_columns(path, local_rules(), *event, glm::dmat3(0.5));
     const glm::dvec3 exact = event->change(dD, {0.05, 0, 0});
     EXPECT_LT(glm::length(path.column[0].dD - exact), 1e-8);
-}
-
-// The bound of a flight moves with the surface behind it.
-TEST(PathDifferential, FlightsUpToASurfaceMoveWithIt) {
-    const glm::dvec3 D = glm::normalize(glm::dvec3(0.3, -1, 0)), N(0, 1, 0), P(0, 1, 0);
-    const double L = 1 / -D.y, sigma = 0.7, u = 0.35;
-    const FlightSample flight = sample_bounded_distance(sigma, L, u);
-    PathDifferential path;
-    const glm::dvec3 dP(0.1, 0.2, 0), dD = glm::cross(D, glm::dvec3(0, 0, 0.3));
-    add_variable(path, {dP, dD, 0, 1});
-    move_in_volume(path, D, flight.t, {flight.dt_du, 1},
-                   [&](const glm::dvec3& p, const glm::dvec3& d) {
-                       return flight.dt_dlength * transfer_to_plane(D, N, L, p, d).dt;
-                   });
-    const auto end = [&](auto x) {
-        using S = decltype(x);
-        using std::exp, std::log;
-        const tests::Vector<S> from = tests::moved(P, dP, x), along = tests::moved(D, dD, x);
-        const S length = tests::plane_distance<S>(from, along, N, kStill);
-        const S Q = S(1) - exp(S(0) - S(sigma) * length);
-        return from + ((S(0) - log(S(1) - S(u) * Q)) / S(sigma)) * along;
-    };
-    tests::ColumnErrors errors;
-    errors.add(end, path.column[0].dP);
-    tests::expect_derivatives(errors);
 }
 
 }  // namespace

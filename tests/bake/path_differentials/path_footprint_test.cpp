@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "bake/path_differentials/area_sample.h"
 #include "bake/path_differentials/axis_frame.h"
-#include "bake/path_differentials/flight_sample.h"
 #include "bake/path_differentials/path_differential.h"
 #include "bake/path_differentials/steps.h"
 #include "tests/bake/path_differentials/event_check.h"
@@ -72,7 +72,7 @@ TEST(PathFootprint, IsTheHullOfPerturbedPaths) {
 // Of a curved receiver the normal turns along the cell, and the directions around it.
 TEST(PathFootprint, ReceiversTurnTheirBouncesWithTheirNormal) {
     const SurfaceShape sphere = sphere_shape({0, 0, 0}, 2, {0, 2, 0});
-    const AreaSample cell = cell_of_area({0, 2, 0}, sphere.N, 0.01);
+    const AreaSample cell{{0, 2, 0}, {0.1, 0, 0}, {0, 0, 0.1}};
     PathDifferential path;
     add_variable(path, {cell.dP_du, kStill, 0, 1});
     add_variable(path, {cell.dP_dv, kStill, 0, 1});
@@ -175,7 +175,6 @@ TEST(PathFootprint, IsAtMostAQuarterOfTheScene) {
         EXPECT_LE(at.area, 4 + 1e-12);
         EXPECT_GT(at.extent.minor, 0.5);
     }
-    EXPECT_LE(volume_footprint(path, local_rules(8)).x, 2);
 }
 
 // Hard case: at the eye all positions stand still.
@@ -200,47 +199,6 @@ TEST(PathFootprint, IsSeenInTextureCoordinates) {
     EXPECT_NEAR(at.area, 0.01, 1e-17);
     const FootprintPair uv = footprint_in_texture(at, {{10, 0}, {0, 0}, {0, 5}});
     EXPECT_NEAR(pair_area(uv), 0.5, 1e-14);
-}
-
-// Two flights in a homogeneous medium, by dual numbers: all four vertices' numbers.
-TEST(PathFootprint, InAVolumeHasThreeDimensions) {
-    const double sigma = 2, g = 0.6, u1 = 0.4, u2 = 0.7;
-    const glm::dvec2 x(0.3, 0.45);
-    const glm::dvec3 first(0, 0, 1);
-    PathDifferential path;
-    const FlightSample near = sample_flight_distance(sigma, u1);
-    const auto even = [](const glm::dvec3&, const glm::dvec3&) { return 0.0; };
-    move_in_volume(path, first, near.t, {near.dt_du, 1e-5}, even);
-    const glm::dvec3 D = scatter_in_lobe(path, local_rules(),
-                                         {.axis = first,
-                                          .lobe = {Lobe::Kind::henyey_greenstein, g},
-                                          .u = x.x,
-                                          .v = x.y,
-                                          .step_u = 1e-5,
-                                          .step_v = 1e-5});
-    const FlightSample far = sample_flight_distance(sigma, u2);
-    move_in_volume(path, D, far.t, {far.dt_du, 1e-5}, even);
-    ASSERT_EQ(path.count, 4u);
-    const auto end = [&](std::array<tests::Dual, 4> d) {
-        using S = tests::Dual;
-        const auto flight = [&](S u) { return (S(0) - log(S(1) - u)) / S(sigma); };
-        const auto frame = tests::branchless_frame<S>(first);
-        const tests::Vector<S> turned =
-            tests::lobe_direction<S>(tests::concentric_point<S>(S(x.x) + d[1], S(x.y) + d[2]),
-                                     [&](S q) { return tests::henyey_greenstein_cosine(g, q); });
-        return flight(S(u1) + d[0]) * tests::Vector<S>(first) +
-               flight(S(u2) + d[3]) * tests::in_frame<S>(frame, first, turned);
-    };
-    std::vector<glm::dvec3> vectors;
-    for (std::size_t i = 0; i < 4; ++i) {
-        std::array<tests::Dual, 4> d{};
-        d[i].change = 1;
-        EXPECT_LT(glm::length(path.column[i].dP - changes(end(d))), 1e-8) << i;
-        vectors.push_back(1e-5 * path.column[i].dP);
-    }
-    const glm::dvec3 extents = volume_footprint(path, local_rules());
-    EXPECT_LT(glm::length(extents - rms_extents(vectors)), 1e-18);
-    EXPECT_GT(extents.z, 1e-6);
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
-#include "bake/path_differentials/path_gradient.h"
+#include "tests/bake/path_differentials/path_gradient.h"
 
-#include "bake/path_differentials/transfer.h"
 #include "tests/bake/path_differentials/event_check.h"
+#include "tests/bake/path_differentials/transfer.h"
 
 namespace opaline::bake {
 namespace {
@@ -38,27 +38,23 @@ TEST(PathGradient, CosinesAndLobesAreLogarithmicDerivatives) {
 
 TEST(PathGradient, MicrofacetsAreLogarithmicDerivatives) {
     tests::RandomInputs random(26);
-    tests::ColumnErrors lobes, densities;
+    tests::ColumnErrors lobes;
     for (int i = 0; i < tests::kRandomCases; ++i) {
         const glm::dvec3 N = random.unit(), in = random.unit_facing(N, 0.1);
         const glm::dvec3 out = random.unit_facing(N, 0.1), dN = random.change_of(N);
         const DirectionPair pair{in, out, random.change_of(in), random.change_of(out)};
         const double alpha = random.uniform(0.1, 1);
-        const auto ln = [&](auto x, bool density) {
+        const auto ln = [&](auto x) {
             using S = decltype(x);
             return alone(tests::ln_microfacet<S>(moved(N, dN, x), moved(in, pair.din, x),
-                                                 moved(out, pair.dout, x), alpha, density));
+                                                 moved(out, pair.dout, x), alpha));
         };
-        lobes.add([&](auto x) { return ln(x, false); },
-                  alone_column(dln_microfacet(N, dN, pair, alpha)));
-        densities.add([&](auto x) { return ln(x, true); },
-                      alone_column(dln_visible_reflection(N, dN, pair, alpha)));
+        lobes.add([&](auto x) { return ln(x); }, alone_column(dln_microfacet(N, dN, pair, alpha)));
     }
     tests::expect_derivatives(lobes, 1e-9);
-    tests::expect_derivatives(densities, 1e-9);
 }
 
-TEST(PathGradient, GeometryTransmittanceAndTexturesAddUp) {
+TEST(PathGradient, GeometryIsTwoCosinesAndADistance) {
     tests::RandomInputs random(27);
     tests::ColumnErrors errors;
     for (int i = 0; i < tests::kRandomCases; ++i) {
@@ -67,7 +63,6 @@ TEST(PathGradient, GeometryTransmittanceAndTexturesAddUp) {
         const glm::dvec3 NX = random.unit_facing(D, 0.2), NY = -random.unit_facing(D, 0.2);
         const glm::dvec3 dX = random.vector(0.5), dY = random.vector(0.5);
         const glm::dvec3 dNX = random.change_of(NX), dNY = random.change_of(NY);
-        const double sigma = 0.8;
         const Connection segment = connect(X, Y);
         const glm::dvec3 dD = segment.direction_change(dX, dY);
         const double dr = segment.length_change(dX, dY);
@@ -79,16 +74,12 @@ TEST(PathGradient, GeometryTransmittanceAndTexturesAddUp) {
                 const S r2 = tests::dot(d, d);
                 // cos cos' / r^2 = (N.d)(N'.d) / r^4
                 return alone(log(abs(tests::dot(moved(NX, dNX, x), d))) +
-                             log(abs(tests::dot(moved(NY, dNY, x), d))) - S(2) * log(r2) -
-                             S(sigma) * tests::length(d));
+                             log(abs(tests::dot(moved(NY, dNY, x), d))) - S(2) * log(r2));
             },
             alone_column(dln_geometry(dln_cosine(NX, segment.D, dNX, dD),
-                                      dln_cosine(NY, segment.D, dNY, dD), segment.r, dr) +
-                         dln_transmittance(sigma, dr)));
+                                      dln_cosine(NY, segment.D, dNY, dD), segment.r, dr)));
     }
     tests::expect_derivatives(errors, 1e-9);
-    EXPECT_EQ(dln_texture(0.5, {2, 1}, {0.1, 0.2}), 0.8);
-    EXPECT_EQ(dln_texture(0, {2, 1}, {0.1, 0.2}), 0);
 }
 
 // Hard case: 1 / cos at grazing angles and on the horizon.

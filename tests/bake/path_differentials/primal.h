@@ -128,7 +128,7 @@ Vector<S> triangle_point(std::array<Vector<S>, 3> corner, S u, S v, bool folded)
 
 /// ln of the isotropic microfacet lobe D G2 / (4 cos cos), up to a constant.
 template <class S>
-S ln_microfacet(Vector<S> N, Vector<S> in, Vector<S> out, double alpha, bool density_of_in) {
+S ln_microfacet(Vector<S> N, Vector<S> in, Vector<S> out, double alpha) {
     using std::log, std::sqrt;
     const S a2 = S(alpha * alpha), c = dot(N, normalized(in + out));
     const S d = c * c * (a2 - S(1)) + S(1);
@@ -137,9 +137,6 @@ S ln_microfacet(Vector<S> N, Vector<S> in, Vector<S> out, double alpha, bool den
     };
     const S ln_D = log(a2) - log(S(std::numbers::pi)) - S(2) * log(d);
     const S c_i = dot(N, in), c_o = dot(N, out);
-    if (density_of_in) {
-        return ln_D - log(S(1) + lambda(c_i)) - log(S(4) * c_i);
-    }
     return ln_D - log(S(1) + lambda(c_i) + lambda(c_o)) - log(S(4) * c_i * c_o);
 }
 

@@ -2,8 +2,8 @@
 
 #include <numbers>
 
-#include "bake/path_differentials/transfer.h"
 #include "tests/bake/path_differentials/event_check.h"
+#include "tests/bake/path_differentials/transfer.h"
 
 namespace opaline::bake {
 namespace {

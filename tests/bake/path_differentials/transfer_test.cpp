@@ -1,4 +1,4 @@
-#include "bake/path_differentials/transfer.h"
+#include "tests/bake/path_differentials/transfer.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

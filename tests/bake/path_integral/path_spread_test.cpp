@@ -1,4 +1,4 @@
-#include "bake/path_integral/path_spread.h"
+#include "tests/bake/path_integral/path_spread.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include "bake/effects/multiple/multiple_stage.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
-#include "tests/support/rates.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
@@ -35,7 +34,7 @@ struct Predicted {
 };
 
 Predicted predict(const formats::Scene& scene, const Knobs& knobs = {}, unsigned threads = 2,
-                  const Rates& rates = tests::make_rates()) {
+                  const StageRates& rates = {}) {
     Predicted predicted;
     const SceneFacts facts = inspect_scene(scene);
     predicted.plan = plan_bake(scene, facts, knobs);
@@ -87,11 +86,8 @@ TEST(CostModel, LocalRowsInColourPayForTheTransform) {
     formats::Medium dense = tests::make_grey_medium(1e6f, 1e3f);
     dense.sigma_s.r = 5e5f;
     const auto scene = tests::make_translucent_scene({tests::make_cube(4, false)}, dense);
-    Rates rates;
-    rates.encode_grey = 1e-8;  // with a transform; encode_colour is without
-    rates.crowding = 1;
     Knobs knobs;
-    const Predicted p = predict(scene, knobs, 1, rates);
+    const Predicted p = predict(scene, knobs, 1);
     const auto layouts = layout_rows(scene, p.plan, knobs);
     ASSERT_TRUE(layouts[0].at_entry);
     ASSERT_EQ(layouts[0].bands(), 3u);
@@ -100,7 +96,11 @@ TEST(CostModel, LocalRowsInColourPayForTheTransform) {
     for (const StageCost& stage : p.cost.stages) {
         rows += stage.name.starts_with("rows of ") ? stage.seconds : 0;
     }
-    EXPECT_NEAR(rows, vertices * 3 * 6 * 16 * 16 * 1e-8, 1e-9);
+    const CostInput input{knobs};
+    EXPECT_NEAR(rows,
+                encode_work(input, 3, 1, vertices).shared +
+                    irradiance_work(input, vertices, layouts[0].occluded).shared,
+                1e-9 * rows);
 }
 
 // The pilot gathers them once, before it takes samples of media, and tries all encodings on them.
@@ -123,7 +123,7 @@ TEST(CostModel, PredictingTwiceIsPredictingOnce) {
     const formats::Scene scene = ball_on_floor();
     Predicted p = predict(scene);
     const double first = p.plan[0].predicted_seconds;
-    predict_costs(scene, inspect_scene(scene), {}, tests::make_rates(), 2, p.plan);
+    predict_costs(scene, inspect_scene(scene), {}, {}, 2, p.plan);
     EXPECT_EQ(p.plan[0].predicted_seconds, first);
 }
 
@@ -155,8 +155,14 @@ void expect_dearer(const Predicted& small, const Predicted& large, const char* w
 TEST(CostModel, MoreReceiversAndTrianglesAreNeverCheaper) {
     expect_dearer(predict(ball_on_floor(2)), predict(ball_on_floor(3)), "finer ball");
     expect_dearer(predict(ball_on_floor(3)), predict(ball_on_floor(4)), "finest ball");
-    // Fewer than those from which on receivers share rays (interreflection: sites).
-    expect_dearer(predict(ball_on_floor(2, 4)), predict(ball_on_floor(2, 56)), "finer floor");
+    // Fewer than those from which on receivers share rays (interreflection: sites). Of the
+    // receivers of the self-check, a fixed number, fewer lie on the ball, whose truth takes long.
+    Predicted few = predict(ball_on_floor(2, 4)), many = predict(ball_on_floor(2, 56));
+    for (Predicted* p : {&few, &many}) {
+        std::erase_if(p->cost.stages,
+                      [](const StageCost& stage) { return stage.name == "self-check"; });
+    }
+    expect_dearer(few, many, "finer floor");
 }
 
 TEST(CostModel, FinerKnobsAreNeverCheaper) {
@@ -195,15 +201,32 @@ TEST(CostModel, ThreadsShareAllButWhatOneMustDo) {
     EXPECT_GT(many, 0);
 }
 
+// A kind that took twice as long takes all others, which no bake had, along.
 TEST(CostModel, SlowerMachineTakesLongerForEverything) {
-    Rates slow = tests::make_rates();
-    visit_rates(slow, [](const char*, double& rate) { rate *= 2; });
-    slow.crowding = tests::make_rates().crowding;
+    const StageRates slow{{{"rows", {2, 1}}}};
     const Predicted fast = predict(ball_on_floor()), late = predict(ball_on_floor(), {}, 2, slow);
     for (std::size_t i = 0; i < fast.cost.stages.size(); ++i) {
         EXPECT_NEAR(late.cost.stages[i].seconds, 2 * fast.cost.stages[i].seconds,
                     1e-9 * late.cost.seconds);
+        EXPECT_EQ(late.cost.stages[i].work, fast.cost.stages[i].work);
     }
+}
+
+// Rows of a medium teach nothing of rows of the floor, but another body's rows of its effects do.
+TEST(CostModel, StagesAreOfAKindWhereTheSameEffectsAct) {
+    const auto kinds = [](const formats::Scene& scene) {
+        std::vector<std::string> rows;
+        for (const StageCost& stage : predict(scene).cost.stages) {
+            if (stage.name.starts_with("rows of ")) {
+                rows.push_back(stage.kind);
+            }
+        }
+        return rows;
+    };
+    const auto coarse = kinds(ball_on_floor(2)), fine = kinds(ball_on_floor(3));
+    ASSERT_EQ(coarse.size(), 2u);
+    EXPECT_NE(coarse[0], coarse[1]);
+    EXPECT_EQ(coarse, fine);
 }
 
 // Shares of nothing are nothing, with a pilot too.

@@ -8,7 +8,6 @@
 #include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
-#include "tests/support/rates.h"
 
 namespace opaline::bake {
 namespace {
@@ -27,8 +26,8 @@ Planned plan_ball(const formats::Medium& medium) {
     Planned p{tests::make_translucent_scene({tests::make_sphere(2), floor}, medium), {}, {}, {}};
     p.facts = inspect_scene(p.scene);
     p.plan = plan_bake(p.scene, p.facts, {});
-    p.cost = predict_costs(p.scene, p.facts, {}, tests::make_rates(), 2, p.plan);
-    predict_savings(p.scene, p.facts, {}, tests::make_rates(), 2, p.plan);
+    p.cost = predict_costs(p.scene, p.facts, {}, {}, 2, p.plan);
+    predict_savings(p.scene, p.facts, {}, {}, 2, p.plan);
     return p;
 }
 
@@ -40,7 +39,7 @@ TEST(Savings, AreWhatTurningTheEntryOnWouldAdd) {
     ASSERT_FALSE(colour->on);
     std::vector<PlanEntry> forced = p.plan;
     forced[static_cast<std::size_t>(colour - p.plan.begin())].on = true;
-    const CostPrediction more = predict_costs(p.scene, p.facts, {}, tests::make_rates(), 2, forced);
+    const CostPrediction more = predict_costs(p.scene, p.facts, {}, {}, 2, forced);
     EXPECT_GT(colour->saved_seconds, 0);
     EXPECT_GT(colour->saved_bytes, 0u);
     EXPECT_NEAR(colour->saved_seconds, more.seconds - p.cost.seconds, 1e-9 * more.seconds);

@@ -61,5 +61,14 @@ TEST(KdOrder, EveryNodeIsARunSplitWhereItIsLongest) {
     }
 }
 
+TEST(KdOrder, OfSamplesAtOnePlaceHasThemAll) {
+    const std::vector<SurfaceSample> samples(1000);
+    std::vector<std::uint32_t> order = kd_order(samples), all(samples.size());
+    expect_split(samples, order);
+    std::ranges::sort(order);
+    std::iota(all.begin(), all.end(), 0u);
+    EXPECT_EQ(order, all);
+}
+
 }  // namespace
 }  // namespace opaline::bake

@@ -143,5 +143,62 @@ TEST(OrientBodies, NonManifoldAndOneSidedSurfacesAreHarmless) {
     EXPECT_TRUE(orient_bodies(wax({nothing})).surfaces.empty());
 }
 
+Scene double_sided(std::vector<Primitive> primitives) {
+    Scene scene = tests::make_scene(std::move(primitives));
+    scene.materials[0].double_sided = true;
+    return scene;
+}
+
+bool is_lit_on_both_sides(const OrientedBodies& bodies) {
+    return bodies.scene && bodies.scene->materials[0].sheet;
+}
+
+TEST(OrientBodies, ADoubleSidedBodyTurnedInsideOutShowsItsOutside) {
+    const Primitive right = tests::make_sphere(2);
+    EXPECT_FALSE(orient_bodies(double_sided({right})).scene);
+    const OrientedBodies bodies = orient_bodies(double_sided({turned_inside_out(right)}));
+    ASSERT_TRUE(bodies.scene);
+    EXPECT_TRUE(same_triangles(bodies.scene->primitives[0], right));
+    EXPECT_EQ(bodies.scene->primitives[0].normal, right.normal);
+    EXPECT_FALSE(is_lit_on_both_sides(bodies));
+    EXPECT_TRUE(bodies.surfaces.empty()) << "nothing to warn of";
+}
+
+TEST(OrientBodies, DoubleSidedWallsAndRoomsThatAreLivedInHaveLightOnBothSides) {
+    const Primitive wall = tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+    const OrientedBodies open = orient_bodies(double_sided({wall}));
+    ASSERT_TRUE(is_lit_on_both_sides(open));
+    EXPECT_EQ(open.scene->materials[0].sheet->reflect, (formats::Rgb{1, 1, 1}));
+    EXPECT_EQ(open.scene->materials[0].sheet->transmit, formats::Rgb{});
+    const Primitive room = tests::make_cube(1, true);
+    EXPECT_FALSE(is_lit_on_both_sides(orient_bodies(double_sided({room}))));
+    EXPECT_TRUE(
+        is_lit_on_both_sides(orient_bodies(double_sided({room, tests::make_sphere(1, 0.2f)}))));
+    Scene lit = double_sided({room});
+    lit.lights.emplace_back();
+    EXPECT_TRUE(is_lit_on_both_sides(orient_bodies(lit)));
+    Scene leaves = double_sided({tests::make_sphere(1)});
+    leaves.materials[0].alpha_mode = formats::Material::AlphaMode::mask;
+    EXPECT_TRUE(is_lit_on_both_sides(orient_bodies(leaves))) << "its inside is seen through holes";
+}
+
+// As programs write the seam of a sphere: sin(2 pi) is not 0.
+TEST(OrientBodies, SeamsThatOnlyRoundingOpensAreClosed) {
+    for (const glm::vec3 place : {glm::vec3(0), glm::vec3(300, -7, 20)}) {
+        Primitive ball = tests::make_cube(2, false);
+        std::uint32_t i = 0;
+        for (glm::vec3& at : ball.position) {
+            const float off = i++ % 2 == 0 ? 1.2e-7f : -1e-16f;
+            at = place + at + off;
+        }
+        const OrientedBodies bodies = orient_bodies(wax({ball}));
+        EXPECT_EQ(bodies.surfaces[0].open_edges, 0u) << place.x;
+        EXPECT_TRUE(describe_faults(wax({}), bodies.surfaces).empty());
+    }
+    Primitive gap = tests::make_cube(1, false);
+    gap.position[0] += 1e-4f;
+    EXPECT_GT(orient_bodies(wax({gap})).surfaces[0].open_edges, 0u) << "a hole that one can see";
+}
+
 }  // namespace
 }  // namespace opaline::bake

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "bake/receivers/body_points.h"
+#include "tests/support/media.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
@@ -79,6 +81,41 @@ TEST(VertexReceivers, LooseVerticesAreReceiversToo) {
     scene.primitives[0].position.push_back({9, 9, 9});
     scene.primitives[0].normal.push_back({0, 1, 0});
     EXPECT_EQ(make_vertex_receivers(scene).back().origin, glm::vec3(9, 9, 9));
+}
+
+// A cube of 2 m in cells of .5 m: vertices of edges look from up to two mean free paths inside
+// their own face, others from where they are.
+TEST(BodyPoints, VertexOfASharpEdgeLooksFromBesideItUnderItsOwnFace) {
+    for (const float sigma_t : {100.0f, 1.0f}) {
+        const auto scene = tests::make_translucent_scene({tests::make_cube(4, false)},
+                                                         tests::make_grey_medium(sigma_t, 0));
+        const auto points = make_body_points(scene, make_vertex_receivers(scene));
+        for (const BodyPoint& point : points) {
+            const glm::vec3 at = glm::abs(point.position);
+            const int edges = (at.x == 1) + (at.y == 1) + (at.z == 1) - 1;
+            EXPECT_NEAR(glm::dot(point.aside, point.normal), 0, 1e-6f);
+            EXPECT_LT(glm::length(point.aside), std::min(2.0001f / sigma_t, 0.4f));
+            if (edges == 0) {
+                EXPECT_EQ(point.aside, glm::vec3(0));
+                continue;
+            }
+            for (int axis = 0; axis < 3; ++axis) {
+                if (at[axis] == 1 && point.normal[axis] == 0) {
+                    EXPECT_LT(std::abs(step_aside(point).position[axis]),
+                              sigma_t > 10 ? 0.995f : 0.9f);
+                }
+            }
+        }
+    }
+}
+
+// One vertex for all faces has no face of its own.
+TEST(BodyPoints, VertexThatFacesShareStaysInItsPlace) {
+    const auto ball =
+        tests::make_translucent_scene({tests::make_sphere(2)}, tests::make_grey_medium(1, 0));
+    for (const BodyPoint& point : make_body_points(ball, make_vertex_receivers(ball))) {
+        EXPECT_EQ(point.aside, glm::vec3(0));
+    }
 }
 
 }  // namespace

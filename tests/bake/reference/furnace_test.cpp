@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 
 #include "bake/reference/reference_image.h"
@@ -70,6 +71,65 @@ TEST(ReferenceFurnace, WhatLeavesThroughAHoleIsAsBrightAsTheRest) {
         for (const bake::Moments& m : estimate.pixel) {
             EXPECT_NEAR(m.mean.y, 1, 3 * standard_error(m) + 0.002) << eta;
             EXPECT_LT(standard_error(m), 0.02) << eta;
+        }
+    }
+}
+
+// A cube of side 2, moved.
+Primitive cube_at(glm::vec3 centre) {
+    Primitive cube = make_cube(1, false);
+    for (glm::vec3& p : cube.position) {
+        p += centre;
+    }
+    return cube;
+}
+
+bake::Moments radiance_along(const ReferenceFixture& fixture, glm::vec3 from, glm::vec3 direction) {
+    bake::Moments seen;
+    for (std::uint32_t i = 0; i < 4000; ++i) {
+        bake::RandomStream random(7, 0, i);
+        const auto sample = bake::trace_ray(fixture.space(), from, direction, random, {});
+        EXPECT_FALSE(sample.lost);
+        seen.add(sample.radiance);
+    }
+    return seen;
+}
+
+// Two cubes that share a face, overlap with four faces in one plane each, or are one and the same
+// are the box around both. Their coordinates are no round numbers: points of faces are rounded.
+TEST(ReferenceFurnace, BodiesOfOneMediumThatTouchOrOverlapAreOneBody) {
+    const glm::vec3 at(0.3f, 17.1f, -3.7f);
+    for (const float apart : {2.0f, 1.1f, 0.0f}) {
+        Primitive box = make_cube(1, false);
+        for (glm::vec3& p : box.position) {
+            p = at + glm::vec3(p.x > 0 ? 1 + apart : -1, p.y, p.z);
+        }
+        for (const float eta : {1.4f, 1.0f}) {
+            Scene two = make_scene({cube_at(at), cube_at(at + glm::vec3(apart, 0, 0))});
+            Scene one = make_scene({box});
+            one.materials[0].medium = two.materials[0].medium = make_medium(2, 0.8f, 0, eta);
+            const auto pair = make_fixture(two, make_white_sky());
+            const auto whole = make_fixture(one, make_white_sky());
+            for (const glm::vec3 direction : {glm::vec3(0, -1, 0), glm::vec3(0.6f, -0.8f, 0)}) {
+                const glm::vec3 from = at + glm::vec3(0.4f, 1, 0.2f) - 3.0f * direction;
+                const bake::Moments a = radiance_along(*pair, from, direction);
+                const bake::Moments b = radiance_along(*whole, from, direction);
+                EXPECT_NEAR(a.mean.x, b.mean.x,
+                            4 * std::hypot(standard_error(a), standard_error(b)))
+                    << apart << " " << eta;
+                EXPECT_LT(standard_error(a), 0.01);
+            }
+            if (apart == 2) {
+                continue;  // vertices of the face between have no outside
+            }
+            two.materials[0].medium = make_medium(20, 1, 0, eta);
+            const auto furnace = make_fixture(std::move(two), make_white_sky());
+            const bake::Estimate found = estimate(*furnace, 48, 16);
+            EXPECT_LE(found.lost, 8u)
+                << "of 768, where rounding meets an edge: " << apart << " " << eta;
+            for (const bake::Moments& m : found.pixel) {
+                EXPECT_TRUE(m.mean.x == 0 || std::abs(m.mean.x - 1) < 0.3) << m.mean.x;
+            }
         }
     }
 }

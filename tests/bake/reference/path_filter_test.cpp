@@ -10,9 +10,9 @@
 
 #include "bake/path_differentials/smooth_event.h"
 #include "bake/path_differentials/surface_shape.h"
-#include "bake/path_differentials/transfer.h"
 #include "bake/reference/glossy_brdf.h"
 #include "bake/reference/rough_boundary.h"
+#include "tests/bake/path_differentials/transfer.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/reference/textured_board.h"
 

@@ -1,4 +1,4 @@
-#include "bake/scattering/normalized_diffusion.h"
+#include "bake/scattering/profile.h"
 
 #include <gtest/gtest.h>
 

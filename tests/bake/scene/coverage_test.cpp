@@ -105,5 +105,26 @@ TEST(Coverage, RaysMeetAShareByItsProbabilityAndLayersIndependently) {
     }
 }
 
+// Of index 1.5 a face reflects R = 0.04 along the normal: two of them let (1 - R) / (1 + R) pass.
+TEST(Coverage, GlassLetsPassWhatTwoFacesDoNotReflect) {
+    formats::Scene scene = leaf(Material::AlphaMode::opaque, false);
+    scene.materials[0].sheet = formats::Sheet{.clear = 1};
+    const Coverage glass = coverage_of(scene);
+    const auto met = [&](float cosine) {
+        constexpr int kRays = 40000;
+        int sum = 0;
+        for (int i = 0; i < kRays; ++i) {
+            sum += meets_surface(glass, {{static_cast<float>(i), 0, 0}, {0, 0, 1}, 0, 0, 0, cosine},
+                                 0.3f, 0.3f);
+        }
+        return static_cast<double>(sum) / kRays;
+    };
+    EXPECT_NEAR(met(1), 2 * 0.04 / 1.04, 0.004);
+    EXPECT_NEAR(met(0.01f), 1, 0.08) << "grazing";
+    scene.materials[0].alpha_mode = Material::AlphaMode::mask;
+    scene.materials[0].alpha_cutoff = 2;
+    EXPECT_FALSE(meets_surface(coverage_of(scene), {}, 0.3f, 0.3f)) << "there is no glass";
+}
+
 }  // namespace
 }  // namespace opaline::bake

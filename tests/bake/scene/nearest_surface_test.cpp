@@ -64,5 +64,16 @@ TEST(NearestSurface, TrianglesWithoutAreaAndBodiesWithoutTrianglesDoNoHarm) {
     EXPECT_EQ(none.find({0, 0, 0}).primitive, formats::kNone);
 }
 
+TEST(NearestSurface, ManyTrianglesInOnePlaceAreAsOne) {
+    formats::Primitive pile;
+    pile.position = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    for (int i = 0; i < 1000; ++i) {
+        pile.index.insert(pile.index.end(), {0, 1, 2});
+    }
+    const auto place = NearestSurface(tests::make_scene({pile}), 0).find({0.25f, 2, 0.25f});
+    EXPECT_FLOAT_EQ(place.distance, 2);
+    EXPECT_EQ(place.first_index, 0u) << "the first";
+}
+
 }  // namespace
 }  // namespace opaline::bake

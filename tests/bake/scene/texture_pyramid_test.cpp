@@ -86,6 +86,24 @@ TEST(TexturePyramid, ALongFootprintAveragesAlongItselfAlone) {
     EXPECT_NEAR(bake::sample_footprint(lookup, pyramid, uv, moments(30, 30)).r, 0.5, 1e-5);
 }
 
+TEST(TexturePyramid, NearestSamplersGiveTexelsWhereTheImageIsMagnified) {
+    formats::Image8 image{2, 1, {255, 255, 255, 255, 0, 0, 0, 255}};
+    const TexturePyramid pyramid = bake::make_pyramid(image, true);
+    const auto red = [&](TextureWrap mode, float u) {
+        const ImageLookup lookup{image, mode, TextureWrap::nearest_clamp, true};
+        const float point = bake::sample_image(lookup, {u, 0.5f}).r;
+        EXPECT_EQ(bake::sample_footprint(lookup, pyramid, {u, 0.5f}, moments(0.01f, 0.01f)).r,
+                  point);
+        return point;
+    };
+    EXPECT_EQ(red(TextureWrap::nearest_repeat, 0.49f), 1);
+    EXPECT_EQ(red(TextureWrap::nearest_repeat, 0.51f), 0);
+    EXPECT_EQ(red(TextureWrap::nearest_repeat, 1.01f), 1);
+    EXPECT_EQ(red(TextureWrap::nearest_clamp, 1.01f), 0);
+    EXPECT_EQ(red(TextureWrap::nearest_mirror, 1.01f), 0);
+    EXPECT_EQ(red(TextureWrap::nearest_mirror, -0.1f), 1);
+}
+
 // Look-ups in a level whose texels are all like the image's see the same wrapped plane.
 TEST(TexturePyramid, CoarserLevelsWrapAsTheImageDoes) {
     formats::Image8 image{4, 4, {}};
@@ -107,6 +125,8 @@ TEST(TexturePyramid, CoarserLevelsWrapAsTheImageDoes) {
     EXPECT_NEAR(red(TextureWrap::mirror, 1.25f), 0, 1e-5);
     EXPECT_NEAR(red(TextureWrap::clamp, -3), 1, 1e-5);
     EXPECT_NEAR(red(TextureWrap::clamp, 7), 0, 1e-5);
+    EXPECT_NEAR(red(TextureWrap::nearest_clamp, 7), 0, 1e-5);
+    EXPECT_NEAR(red(TextureWrap::nearest_mirror, 1.25f), 0, 1e-5);
     EXPECT_TRUE(std::isfinite(red(TextureWrap::repeat, std::numeric_limits<float>::quiet_NaN())));
 }
 

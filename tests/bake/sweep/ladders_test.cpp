@@ -123,7 +123,6 @@ TEST(Ladders, EveryModelIsBakedInThreePresets) {
     }
     EXPECT_EQ(labels,
               (std::set<std::string>{"dipole, draft", "dipole, preview", "dipole, production",
-                                     "scaled, draft", "scaled, preview", "scaled, production",
                                      "walks, draft", "walks, preview", "walks, production"}));
 }
 

@@ -11,7 +11,6 @@
 #include "tests/bake/layers/layer_support.h"
 #include "tests/bake/sweep/enough_time.h"
 #include "tests/support/effects.h"
-#include "tests/support/rates.h"
 
 namespace opaline::bake {
 namespace {
@@ -97,9 +96,6 @@ TEST(LayerSweep, AScenesErrorIsTheLargerOneOfItsLayerAndTheRest) {
 TEST(LayerSweep, PointsOfALayerAloneNeedNoTestLightsAndNoPathTracing) {
     SweepOptions options;
     options.seconds = 4;
-    options.rates = tests::make_rates();
-    // As those of a real machine: the others' would leave no time for a draft.
-    options.rates.series_term = options.rates.flux_product = options.rates.radiance_product = 5e-10;
     options.bake.threads = 2;
     const auto result = tests::sweep_with_enough_time(layer_scene(100, 1e-6), options, 3);
     ASSERT_TRUE(result.has_value());

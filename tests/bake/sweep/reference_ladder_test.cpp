@@ -79,6 +79,8 @@ TEST(ReferenceLadder, WithoutTimeThereAreTwoRungsOfFewReceiversAndWithoutLightNo
     const auto two = climb_reference(milky_ball(), hurried, {}).value();
     EXPECT_EQ(two->rungs.size(), 2u);
     EXPECT_EQ(two->receivers, 16u) << "nor more receivers than it takes";
+    hurried.most_seconds = 0;
+    EXPECT_FALSE(climb_reference(milky_ball(), hurried, {}).value());
     formats::Scene black = ball_on_a_floor();
     black.materials[0].base_color = {0, 0, 0};
     ReferenceLadderOptions few;

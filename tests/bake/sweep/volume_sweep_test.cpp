@@ -9,7 +9,6 @@
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/sweep/enough_time.h"
 #include "tests/support/effects.h"
-#include "tests/support/rates.h"
 #include "tests/support/volumes.h"
 
 namespace opaline::bake {
@@ -52,7 +51,6 @@ TEST(VolumeSweep, LaddersOfACloudAloneAreThoseOfItsKnobs) {
 TEST(VolumeSweep, PointsHaveErrorsOfFourKindsOfLight) {
     SweepOptions options;
     options.seconds = 25;
-    options.rates = tests::make_rates();
     options.bake.threads = 2;
     const auto result = tests::sweep_with_enough_time(make_cloud(), options, 3);
     ASSERT_TRUE(result.has_value());

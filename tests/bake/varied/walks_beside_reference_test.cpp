@@ -25,7 +25,7 @@ TEST(WalksBesideReference, SeeTheSameLightOfAVeinedBallOfVaryingDensity) {
         // Where the line meets a facet.
         const auto hit = fixture->scene.surfaces.closest_hit({3.0f * axis}, -axis, 10);
         ASSERT_TRUE(hit);
-        bake::WalkStart start{hit->position - 1e-5f * hit->flat, axis, hit->flat, 1, true};
+        bake::WalkStart start{hit->position - 1e-5f * hit->flat, axis, hit->flat, 1, axis};
         constexpr std::uint32_t kWalks = 12000;
         glm::dvec3 sum(0), squares(0);
         std::vector<bake::WalkExit> exits;

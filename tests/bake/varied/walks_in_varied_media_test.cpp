@@ -58,7 +58,7 @@ TEST(WalkInVariedMedium, LightPassesARodUnscatteredAsTheIntegralOfItsDensitySays
     for (const float sigma_t : {0.5f, 3.0f}) {
         const auto rod = make_walked_scene(make_rod(make_forward_medium(sigma_t, 1, 0, 1)));
         bake::WalkStart start = start_below({-1, 0.013f, 0.008f}, {-1, 0, 0});
-        start.is_along_normal = true;
+        start.seen = start.normal;
         const Leaving leaving = walk_from(rod->space, start, 1, 60000);
         EXPECT_NEAR(1 - leaving.all, std::exp(-sigma_t), 4 * leaving.error + 0.002) << sigma_t;
         EXPECT_LT(leaving.error, 0.003);

@@ -166,7 +166,7 @@ TEST(VolumeError, TotalIsTheMeanSquareOfTheParts) {
     VolumeTruth truth;
     std::vector<double> luminance;
     for (std::size_t place = 0; place < kLightPlaces; ++place) {
-        const double bright = std::pow(100.0, static_cast<double>(place));
+        const double bright = std::pow(2.0, static_cast<double>(place));
         for (std::size_t p = 0; p < kProbes; ++p) {
             Moments m;
             m.add(glm::dvec3(bright));
@@ -179,6 +179,28 @@ TEST(VolumeError, TotalIsTheMeanSquareOfTheParts) {
     EXPECT_NEAR(report.by_light[0].rms_relative, 0.4, 1e-9);
     EXPECT_NEAR(report.by_light[0].bias, 0.4, 1e-9);
     EXPECT_EQ(report.by_light[3].rms_relative, 0);
+}
+
+// A volume that scatters forward alone: an error of .01 where even light makes 1.
+TEST(VolumeError, OfViewsThatAreDarkIsRelativeToATenthOfEvenLight) {
+    constexpr std::size_t kProbes = 10;
+    VolumeTruth truth;
+    std::vector<double> luminance;
+    for (const double bright : {1.0, 1e-12, 0.0, 1.0}) {
+        for (std::size_t p = 0; p < kProbes; ++p) {
+            Moments m;
+            m.add(glm::dvec3(bright));
+            truth.luminance.push_back(m);
+            luminance.push_back(bright == 1 ? bright : bright + 0.01);
+        }
+    }
+    const VolumeErrorReport report = compare_volumes(luminance, {}, truth, 0);
+    for (const std::size_t place : {1u, 2u}) {
+        EXPECT_NEAR(report.by_light[place].rms_relative, 0.1, 1e-9);
+        EXPECT_NEAR(report.by_light[place].bias, 0.1, 1e-9);
+        EXPECT_NEAR(report.by_light[place].ci95[1], 0.1, 1e-9);
+    }
+    EXPECT_NEAR(report.rms_relative, std::sqrt(0.5) * 0.1, 1e-9);
 }
 
 TEST(VolumeError, NoiseOfThePathsIsNoErrorOfTheFile) {

@@ -11,7 +11,6 @@
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
-#include "tests/support/rates.h"
 
 namespace opaline::bake {
 namespace {
@@ -119,17 +118,16 @@ TEST(VolumeWork, StepsAreThoseOfAllNodesWithinAFactorOfTwo) {
 
 TEST(VolumeWork, TimeGrowsWithWalksAndBytesWithCoefficients) {
     const formats::Scene scene = scene_of_blob(4, 0.9f, 0.5f);
-    const Rates rates = tests::make_rates();
     Knobs knobs = knobs_of_draft();
     const VolumeWork few = work_of(scene, knobs);
-    const double seconds = scattering_work({rates, knobs}, few).shared;
+    const double seconds = scattering_work({knobs}, few).shared;
     const double once = attenuated_row_bytes(few, knobs), often = scattered_row_bytes(few, knobs);
     Knobs more = knobs;
     more.set(kVolumeWalks, 10 * knobs[kVolumeWalks]);
     more.set(kVolumeCoefficients, 4 * knobs[kVolumeCoefficients]);
     const VolumeWork many = work_of(scene, more);
     EXPECT_NEAR(many.collisions, 10 * few.collisions, 0.02 * many.collisions);
-    const double longer = scattering_work({rates, more}, many).shared;
+    const double longer = scattering_work({more}, many).shared;
     EXPECT_GT(longer, 5 * seconds);
     EXPECT_LT(longer, 10.2 * seconds);
     EXPECT_GT(attenuated_row_bytes(many, more), 2.5 * once);

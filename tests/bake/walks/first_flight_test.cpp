@@ -77,6 +77,27 @@ TEST(FirstFlight, EachGroupOfBandsHasItsOwnExtinction) {
     }
 }
 
+// Half of the views from an edge leave through the other face after next to no way. They would be
+// black: files of cubes had dark lines along their edges.
+TEST(FirstFlight, ViewsFromASharpEdgeSeeAsMuchAsOthers) {
+    const auto cube = make_walked_body(make_cube(2, false), make_forward_medium(20, 1, 0, 1));
+    const glm::vec3 up(0, 1, 0);
+    const bake::ViewSet views = bake::make_view_set(bake::make_view_fit(1), 1, up, 1);
+    const auto seen_from = [&](glm::vec3 place, bool fills_crossed = false) {
+        double sum = 0;
+        for (const FlightNode& node : bake::trace_first_flight(
+                 cube->space, views, {place, up, 0.99999f * place, 0}, fills_crossed)) {
+            sum += static_cast<double>(node.weight[0] * views.share[node.view][0]);
+        }
+        return sum;
+    };
+    EXPECT_NEAR(seen_from({1, 1, 0}), 1, 1e-3) << "a vertex";
+    EXPECT_NEAR(seen_from({1, 1, 1}), 1, 1e-3);
+    EXPECT_NEAR(seen_from({1, 1, 0.3f}), 0.5, 0.06) << "none: its views are those of the solid";
+    EXPECT_NEAR(seen_from({1, 1, 0.3f}, true), 1, 1e-4) << "nothing else holds what crosses";
+    EXPECT_NEAR(seen_from({0, 1, 0}), 1, 1e-3);
+}
+
 // A body that stands in its floor is lit by what scatters above it.
 TEST(FirstFlight, WhatStandsInABodyTakesOnlyTheLightThatReachesIt) {
     WalkedBody slab;

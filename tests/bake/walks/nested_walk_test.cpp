@@ -82,7 +82,7 @@ TEST(NestedWalk, ClearCoatOfTheSameIndexReflectsWhatGiovanelliTabulatedForTheCor
     const auto slab = make_nested_body(
         make_layers(0.5f, make_clear(0, 1.5f), make_forward_medium(3, 0.9f, 0, 1.5f)));
     bake::WalkStart start = start_below({0.3f, 0, 0.7f}, kUp);
-    start.is_along_normal = true;
+    start.seen = start.normal;
     const Leaving leaving = walk_from(slab->space, start, 1, 100000);
     constexpr double kBoundary = 0.04;
     EXPECT_NEAR(kBoundary + (1 - kBoundary) * leaving.all, 0.2600, 4 * leaving.error + 5e-4);
@@ -139,7 +139,7 @@ Compared compare_with_reference(std::vector<Part> parts, std::uint32_t walks,
     });
     const auto body = make_nested_body(parts, grey);
     bake::WalkStart start = start_at(body->space, {0.11f, 2, 0.07f}, -kUp);
-    start.is_along_normal = true;
+    start.seen = start.normal;
     const auto eta = static_cast<double>(body->space.eta);
     const double enters = bake::fresnel_transmittance(1, eta);
     Compared result;

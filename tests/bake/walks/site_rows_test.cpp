@@ -233,7 +233,7 @@ TEST(SiteRows, OfSitesInsideShowTheEdgeOfAThinBladeAsItsOwnWalksDo) {
                      white(std::span(views).subspan(static_cast<std::size_t>(axis) * kAll, kAll));
         }
         bake::WalkStart straight = start;
-        straight.is_along_normal = true;
+        straight.seen = straight.normal;
         const Leaving seen = walk_from(body.body->space, straight, 1, kWalks);
         EXPECT_NEAR(along / seen.all, 1, 0.03) << normal.y;
     }

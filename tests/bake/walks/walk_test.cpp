@@ -73,18 +73,41 @@ TEST(Walk, HalfSpaceOfIsotropicScatterersReturnsWhatChandrasekharsFunctionSays) 
 TEST(Walk, SlabAlongItsNormalReflectsAndTransmitsWhatVanDeHulstTabulated) {
     const auto slab = make_walked_body(make_wide_slab(2), make_forward_medium(1, 0.9f, 0.75f, 1));
     bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
-    start.is_along_normal = true;
+    start.seen = start.normal;
     const Leaving leaving = walk_from(slab->space, start, 1, 200000);
     EXPECT_NEAR(leaving.all - leaving.below, 0.09739, 4 * leaving.error);
     EXPECT_NEAR(leaving.below, 0.66096 - std::exp(-2), 4 * leaving.error);
     EXPECT_LT(leaving.error, 0.001);
 }
 
+// Of albedo 1 all that scatters leaves: what crosses, e^-2, is made up for.
+TEST(Walk, WalksThatScatterStandForThoseThatCross) {
+    const auto slab = make_walked_body(make_wide_slab(2), make_forward_medium(1, 1, 0, 1));
+    bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
+    start.seen = start.normal;
+    const auto leaving = [&](const bake::WalkOrders& orders) {
+        std::vector<bake::WalkExit> exits;
+        bake::WalkCounts counts;
+        constexpr std::uint32_t kWalks = 20000;
+        for (std::uint32_t w = 0; w < kWalks; ++w) {
+            bake::WalkRandom random({1, bake::RandomStage::body_walk, 7, w});
+            bake::follow_walk(slab->space, {}, start, orders, random, exits, counts);
+        }
+        double sum = 0;
+        for (const bake::WalkExit& exit : exits) {
+            sum += static_cast<double>(exit.weight[0]) / kWalks;
+        }
+        return sum * counts.crossed_correction({1, 0, 0});
+    };
+    EXPECT_NEAR(leaving({1, false, false}), 1 - std::exp(-2), 0.01);
+    EXPECT_NEAR(leaving({1, false, true}), 1, 1e-4);
+}
+
 // Total reflectance of a half space, with the boundary's own.
 TEST(Walk, RefractingHalfSpaceAlongItsNormalReflectsWhatGiovanelliTabulated) {
     const auto slab = make_walked_body(make_wide_slab(60), make_forward_medium(1, 0.9f, 0, 1.5f));
     bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
-    start.is_along_normal = true;
+    start.seen = start.normal;
     const Leaving leaving = walk_from(slab->space, start, 1, 200000);
     constexpr double kBoundary = 0.04;
     EXPECT_NEAR(kBoundary + (1 - kBoundary) * leaving.all, 0.2600, 4 * leaving.error + 5e-4);
@@ -167,7 +190,7 @@ TEST(Walk, SlabAlongItsNormalSendsLightTowardEveryAngleAsDoublingSays) {
     constexpr std::uint32_t kWalks = 200000;
     const auto slab = make_walked_body(make_wide_slab(2), make_forward_medium(1, 0.9f, 0.75f, 1));
     bake::WalkStart start = start_below({0, 0, 0}, {0, 1, 0});
-    start.is_along_normal = true;
+    start.seen = start.normal;
     std::array<double, 2 * kBins> mean{}, squares{};
     std::vector<bake::WalkExit> exits;
     bake::WalkCounts counts;

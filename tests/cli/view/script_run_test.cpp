@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+
 namespace opaline::cli {
 namespace {
 
@@ -50,7 +52,7 @@ TEST(ScriptRun, StepsWaitForFramesReloadsAndTheFirstViewpoint) {
     }
     run.advance(state, {.is_settled = true});
     run.advance(state, {.is_reloaded = true});
-    EXPECT_EQ(state.exposure, 0);
+    EXPECT_FALSE(state.exposure);
     run.advance(state, {.is_settled = true, .is_reloaded = true});
     EXPECT_EQ(state.exposure, 3);
     EXPECT_FALSE(run.quits());
@@ -69,6 +71,24 @@ TEST(ScriptRun, IsDoneOnceItsLastChangeIsShown) {
     run.advance(state, {.is_settled = true});
     EXPECT_TRUE(run.is_done());
     EXPECT_EQ(run.line(), 0u);
+}
+
+TEST(ScriptRun, TheNextStepWaitsForAnotherFileSoThatItsFaultHasItsLine) {
+    for (const char* change : {"load b.opal", "beside b.opal", "light b.hdr", "drop b.exr"}) {
+        for (const char* next : {"exposure 1\n", "quit\n"}) {
+            ScriptRun run = run_of((std::string("wait-frames 1\n") + change + "\n" + next).c_str());
+            ViewState state = framed_state();
+            for (int frame = 0; frame < 5; ++frame) {
+                run.advance(state, {.is_settled = frame == 0});
+                state.viewpoint.emplace();
+            }
+            EXPECT_EQ(run.line(), 2u) << change;
+            EXPECT_FALSE(run.quits()) << change;
+            run.advance(state, {.is_settled = true});
+            EXPECT_EQ(run.line(), 3u) << change;
+            EXPECT_TRUE(run.quits() || state.exposure == 1) << change;
+        }
+    }
 }
 
 TEST(ScriptRun, AnEmitterThatNoFileHasIsAnError) {

@@ -93,7 +93,7 @@ TEST(ViewScript, EveryFaultIsNamedByItsLine) {
     EXPECT_EQ(faults[0].where, "line 2");
     EXPECT_THAT(faults[0].fault, HasSubstr("'exposre' is no command"));
     EXPECT_EQ(faults[1].where, "line 3");
-    EXPECT_THAT(faults[1].fault, HasSubstr("expected exposure EV"));
+    EXPECT_THAT(faults[1].fault, HasSubstr("expected exposure EV|auto"));
     EXPECT_EQ(faults[6].where, "line 8");
 }
 

@@ -226,13 +226,16 @@ TEST(View, FaultsOfAScriptNameItsLines) {
     const Outcome bad = run_opaline({"view", file, "--script", small.path("bad.txt")});
     EXPECT_EQ(bad.exit_code, 3);
     EXPECT_THAT(bad.err, HasSubstr("bad.txt: line 2: 'fly' is no command"));
-    EXPECT_THAT(bad.err, HasSubstr("bad.txt: line 3: expected exposure EV"));
+    EXPECT_THAT(bad.err, HasSubstr("bad.txt: line 3: expected exposure EV|auto"));
     const Outcome outcome =
         view_with(small, "wait-frames 2\nload none.opal\nscreenshot a.png\nquit\n", {file});
     if (outcome.exit_code == kNoDisplay) GTEST_SKIP() << "no Xvfb";
     EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
-    EXPECT_THAT(outcome.err, HasSubstr("script.txt line 3"));
+    EXPECT_THAT(outcome.err, HasSubstr("script.txt line 2"));
     EXPECT_THAT(outcome.err, HasSubstr("none.opal"));
+    const Outcome last = view_with(small, "load /dev/zero\nquit\n", {file});
+    EXPECT_EQ(last.exit_code, 3) << last.err;
+    EXPECT_THAT(last.err, HasSubstr("script.txt line 1"));
 }
 
 }  // namespace

@@ -90,6 +90,10 @@ TEST(GltfContainer, UrisCannotLeaveTheFolder) {
         ASSERT_FALSE(result.has_value()) << uri;
         EXPECT_EQ(result.error().kind, ErrorKind::bad_input);
         EXPECT_THAT(errors_of(result), HasSubstr("buffer 0: its URI")) << uri;
+        const bool is_path = uri == "../secret.bin" || uri == "%2e%2e/secret.bin" ||
+                             uri == absolute || uri == "link.bin";
+        const auto allowed = import_gltf(folder / "asset/a.gltf", {1, {folder.path()}});
+        EXPECT_EQ(allowed.has_value(), is_path) << uri << errors_of(allowed);
     }
 }
 

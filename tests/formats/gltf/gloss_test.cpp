@@ -87,19 +87,33 @@ TEST(GltfReflection, NeitherMetalNorSpecularIsDiffuse) {
                      .is_diffuse());
 }
 
-TEST(GltfReflection, UnlitAndSpecularGlossinessAreDiffuseAndNamed) {
-    for (const char* extension : {"KHR_materials_unlit", "KHR_materials_pbrSpecularGlossiness"}) {
-        const auto imported =
-            must_import(asset_with_material({{"extensions", {{extension, Json::object()}}}}));
-        EXPECT_TRUE(imported.scene.materials.at(0).gloss.is_diffuse()) << extension;
-        EXPECT_THAT(lines(imported.warnings), HasSubstr(extension));
+TEST(GltfReflection, UnlitIsDiffuseAndNamed) {
+    const auto imported = must_import(
+        asset_with_material({{"extensions", {{"KHR_materials_unlit", Json::object()}}}}));
+    EXPECT_TRUE(imported.scene.materials.at(0).gloss.is_diffuse());
+    EXPECT_THAT(lines(imported.warnings), HasSubstr("KHR_materials_unlit"));
+}
+
+// As Blender exports Principled Volume and Translucent BSDF.
+TEST(GltfReflection, MetalsThatNobodyStatedAreNamedUnlessTheyHaveAMedium) {
+    const auto warnings_of = [](const Json& material) {
+        auto scene = must_import(asset_with_material(material)).scene;
+        return lines(formats::warn_of_unstated_metals(scene));
+    };
+    for (const Json& pbr : {Json::object(), Json{{"baseColorFactor", {1, 0, 0, 1}}}}) {
+        EXPECT_THAT(warnings_of({{"pbrMetallicRoughness", pbr}}),
+                    HasSubstr("material 'Shell': the file states neither metallicFactor"));
     }
-    // Its fall-back for other readers.
-    const Gloss fallback = gloss_of(asset_with_material(
-        {{"pbrMetallicRoughness", {{"roughnessFactor", 0.5}}},
-         {"extensions", {{"KHR_materials_pbrSpecularGlossiness", Json::object()}}}}));
-    EXPECT_EQ(fallback.metallic, 1.0f);
-    EXPECT_EQ(fallback.roughness, 0.5f);
+    EXPECT_THAT(warnings_of(Json::object()), HasSubstr("'Shell'"));
+    // Blender leaves out a metallicFactor of 1, of metals that are meant.
+    for (const Json& pbr : {Json{{"metallicFactor", 1}}, Json{{"roughnessFactor", 0.5}},
+                            Json{{"metallicFactor", 0}}}) {
+        EXPECT_EQ(warnings_of({{"pbrMetallicRoughness", pbr}}), "") << pbr;
+    }
+    EXPECT_EQ(warnings_of({{"extensions", {{"KHR_materials_unlit", Json::object()}}}}), "");
+    auto scene = must_import(asset_with_material(Json::object())).scene;
+    scene.materials.at(0).medium.emplace();
+    EXPECT_TRUE(formats::warn_of_unstated_metals(scene).empty());
 }
 
 TEST(GltfReflection, ValuesOutOfRangeAreClampedWithAWarning) {

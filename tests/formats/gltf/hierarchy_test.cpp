@@ -263,17 +263,105 @@ TEST(GltfHierarchy, SceneFlattenedAltogetherIsRefused) {
 
 TEST(GltfHierarchy, WhatNodesCarryAndIsNotSimulatedIsNamed) {
     AssetBuilder asset = triangle_asset();
-    asset.json["skins"] = Json::array({{{"joints", {0u}}}});
     asset.json["cameras"] = Json::array({{{"type", "perspective"}}});
-    asset.json["nodes"][0]["skin"] = 0u;
     asset.json["nodes"][0]["camera"] = 0u;
     asset.json["nodes"][0]["extensions"]["VENDOR_sound"]["clip"] = 0u;
     asset.json["animations"] = Json::array({Json::object()});
-    asset.json["meshes"][0]["primitives"][0]["targets"] = Json::array({{{"POSITION", 0u}}});
     const std::string warnings = lines(must_import(asset).warnings);
-    for (const char* word : {"skins", "animations", "morph targets", "'VENDOR_sound'", "cameras"}) {
+    for (const char* word : {"animations", "'VENDOR_sound'", "cameras"}) {
         EXPECT_THAT(warnings, HasSubstr(word));
     }
+}
+
+/// A triangle at node 0, below node 1, which is moved by (1, 0, 0).
+AssetBuilder triangle_below_a_parent() {
+    AssetBuilder asset = triangle_asset();
+    asset.json["nodes"][0]["translation"] = {0, 2, 0};
+    asset.json["nodes"].push_back({{"children", {0u}}, {"translation", {1, 0, 0}}});
+    return asset;
+}
+
+TEST(GltfHierarchy, NodeListedBesideAnAncestorStandsOnceByItsParent) {
+    AssetBuilder asset = triangle_below_a_parent();
+    asset.json["nodes"].push_back({{"children", {1u}}, {"translation", {0, 0, 4}}});
+    for (const Json& list : {Json{1u, 0u}, Json{0u, 1u}, Json{0u, 2u}, Json{2u, 1u, 0u, 2u}}) {
+        asset.json["scenes"][0]["nodes"] = list;
+        const auto imported = must_import(asset);
+        ASSERT_EQ(imported.scene.primitives.size(), 1u) << list;
+        const bool from_above = list[1] == 2u || list[0] == 2u;
+        EXPECT_EQ(imported.scene.primitives[0].position[0], glm::vec3(1, 2, from_above ? 4 : 0));
+        EXPECT_THAT(lines(imported.warnings), HasSubstr("scene 0: it lists node 0 and a parent"));
+    }
+}
+
+TEST(GltfHierarchy, ChildListedWithoutItsParentStandsAsIfItHadNone) {
+    AssetBuilder asset = triangle_below_a_parent();
+    asset.json["scenes"][0]["nodes"] = {0u};
+    const auto imported = must_import(asset);
+    ASSERT_EQ(imported.scene.primitives.size(), 1u);
+    EXPECT_EQ(imported.scene.primitives[0].position[0], glm::vec3(0, 2, 0));
+    EXPECT_THAT(lines(imported.warnings), HasSubstr("node 0 without its parent"));
+}
+
+TEST(GltfHierarchy, NodeListedTwiceStandsOnce) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["scenes"][0]["nodes"] = {0u, 0u};
+    const auto imported = must_import(asset);
+    EXPECT_EQ(imported.scene.primitives.size(), 1u);
+    EXPECT_THAT(lines(imported.warnings), HasSubstr("lists a node twice"));
+}
+
+TEST(GltfHierarchy, EveryInstanceOfAMeshIsPlaced) {
+    AssetBuilder asset = triangle_asset();
+    asset.add_node(0);
+    const float h = std::sqrt(0.5f);
+    const auto translation = asset.add<float>({0, 0, 0, 5, 0, 0}, "VEC3");
+    const auto rotation = asset.add<float>({0, 0, 0, 1, 0, 0, h, h}, "VEC4");
+    const auto scale = asset.add<float>({1, 1, 1, 2, 3, 1}, "VEC3");
+    Json& node = asset.json["nodes"][0];
+    node["translation"] = {0, 0, 1};
+    Json& instances = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    instances = {{"TRANSLATION", translation}, {"ROTATION", rotation}, {"SCALE", scale}};
+    asset.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    const auto imported = must_import(asset);
+    ASSERT_EQ(imported.scene.primitives.size(), 3u);
+    EXPECT_EQ(imported.scene.primitives[0].position[1], glm::vec3(1, 0, 1));
+    // Scaled first, then a quarter turn about z, then moved; then by the node.
+    expect_near(imported.scene.primitives[1].position[1], {5, 2, 1}, 1e-6f);
+    expect_near(imported.scene.primitives[1].position[2], {2, 0, 1}, 1e-6f);
+    EXPECT_EQ(imported.scene.primitives[1].name, "node 0 > instance 1 > mesh 0 > primitive 0");
+    EXPECT_THAT(lines(imported.warnings), testing::Not(HasSubstr("EXT_mesh_gpu_instancing")));
+
+    instances["ROTATION"] =
+        asset.add<std::int16_t>({0, 0, 0, 32767, 0, 0, 23170, 23170}, "VEC4", true);
+    instances.erase("SCALE");
+    expect_near(must_import(asset).scene.primitives.at(1).position[1], {5, 1, 1}, 1e-4f);
+    instances = {{"_ID", translation}};
+    EXPECT_EQ(must_import(asset).scene.primitives.size(), 3u) << "two at the node's own place";
+    instances = Json::object();
+    EXPECT_EQ(must_import(asset).scene.primitives.size(), 2u) << "as without the extension";
+
+    instances = {{"TRANSLATION", translation}, {"SCALE", asset.add<float>({1, 1, 1}, "VEC3")}};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("'TRANSLATION' has 2 values"));
+    instances = {{"ROTATION", translation}};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("ROTATION has not 4"));
+    instances = {{"ROTATION", asset.add<float>({0, 0, 0, 0}, "VEC4")}};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("not a unit quaternion"));
+    instances = {{"TRANSLATION", 99u}};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("accessor 99 does not exist"));
+    instances = {{"TRANSLATION", -1}};
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("is not an accessor"));
+}
+
+TEST(GltfHierarchy, TooManyInstancesAreRefusedBeforeTheyAreMade) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["accessors"].push_back(
+        {{"componentType", 5126u}, {"count", 4000000u}, {"type", "VEC3"}});
+    asset.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+        asset.json["accessors"].size() - 1;
+    const auto result = import_asset(asset);
+    ASSERT_FALSE(result.has_value());
+    EXPECT_EQ(result.error().kind, ErrorKind::resource);
 }
 
 }  // namespace

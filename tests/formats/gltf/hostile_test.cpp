@@ -28,7 +28,19 @@ AssetBuilder rich_asset() {
                       {"color", {1, 1, 1}},
                       {"range", 9},
                       {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}}});
+    asset.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {
+        {"diffuseFactor", {1, 0.5, 0, 1}}, {"glossinessFactor", 0.5}};
+    primitive["attributes"]["JOINTS_0"] = asset.add<std::uint8_t>(Blob(12, 0), "VEC4");
+    primitive["attributes"]["WEIGHTS_0"] = asset.add<std::uint8_t>(Blob(12, 255), "VEC4", true);
+    primitive["targets"] =
+        Json::array({{{"POSITION", asset.add<std::int8_t>({0, 0, 1, 0, 0, 0, 0, 0, 0}, "VEC3")}}});
+    asset.json["meshes"][0]["weights"] = {1};
+    asset.json["skins"] = Json::array({{{"joints", {1u}}}});
+    asset.json["nodes"][0]["skin"] = 0u;
     asset.json["nodes"].push_back({{"children", {0u}}, {"rotation", {0, 0, 0, 1}}});
+    asset.json["nodes"][1]["mesh"] = 0u;
+    asset.json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+        asset.add<float>({1, 2, 3}, "VEC3");
     asset.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0u;
     asset.json["scenes"][0]["nodes"] = {1u};
     return asset;

@@ -177,6 +177,25 @@ TEST(GltfMaterials, SamplerWrapModesAreKept) {
     EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("wrap mode 7"));
 }
 
+TEST(GltfMaterials, NearestSamplersAreKept) {
+    AssetBuilder asset = textured(encode_png(kTwoPixels, 2, 1));
+    asset.json["textures"][0]["sampler"] = 0u;
+    const auto wrap_of = [&](const Json& sampler) {
+        asset.json["samplers"] = Json::array({sampler});
+        return must_import(asset).scene.materials.at(0).wrap_u;
+    };
+    using Wrap = formats::TextureWrap;
+    EXPECT_EQ(wrap_of({{"magFilter", 9728u}}), Wrap::nearest_repeat);
+    EXPECT_EQ(wrap_of({{"magFilter", 9728u}, {"wrapS", 33071u}}), Wrap::nearest_clamp);
+    EXPECT_EQ(wrap_of({{"magFilter", 9728u}, {"minFilter", 9987u}, {"wrapS", 33648u}}),
+              Wrap::nearest_mirror);
+    EXPECT_EQ(wrap_of({{"minFilter", 9984u}}), Wrap::nearest_repeat);
+    EXPECT_EQ(wrap_of({{"minFilter", 9986u}}), Wrap::nearest_repeat);
+    EXPECT_EQ(wrap_of({{"magFilter", 9729u}, {"minFilter", 9728u}}), Wrap::repeat);
+    EXPECT_EQ(wrap_of({{"minFilter", 9987u}}), Wrap::repeat);
+    EXPECT_EQ(wrap_of(Json::object({{"name", "none"}})), Wrap::repeat);
+}
+
 TEST(GltfMaterials, TextureTransformMatchesTheExtensionsExample) {
     // The extension's own example: offset (0, 1), a quarter turn, half size is the lower left
     // quadrant of the image (v down: u in 0 to 1/2, v in 1/2 to 1), turned.

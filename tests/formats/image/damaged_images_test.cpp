@@ -56,6 +56,7 @@ std::vector<std::string> small_files() {
         files.push_back(make_exr(ramp(12, 6), {.compression = compression, .is_half = true}));
     }
     files.push_back(make_exr(ramp(24, 20), {.is_tiled = true}));
+    files.push_back(make_exr_of_parts(ramp(4, 3)));
     files.push_back(make_exr(ramp(3, 18), {.is_grey = true, .envmap = Envmap::cube}));
     return files;
 }

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "formats/image/exr_layer.h"
 #include "formats/image/image_kind.h"
 #include "tests/formats/image/image_files.h"
 
@@ -102,20 +103,86 @@ TEST(Exr, OneChannelIsTheFirstNamedThatTheFileHolds) {
 }
 
 TEST(Exr, WithoutColourChannelsTheMessageNamesThoseFound) {
-    const std::string bytes = make_exr(ramp(8, 4), {.prefix = "beauty."});
+    const std::string bytes = make_exr(ramp(8, 4), {.prefix = "not"});
     const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
     ASSERT_FALSE(read);
     EXPECT_EQ(read.error().kind, ErrorKind::bad_input);
-    EXPECT_THAT(message(read.error()), HasSubstr("beauty.R"));
+    EXPECT_THAT(message(read.error()), HasSubstr("notR"));
 }
 
-TEST(Exr, ForeignPrimariesAndLayersAreNamedInWarnings) {
-    const std::string bytes = make_exr(ramp(8, 4), {.has_layer = true, .is_rec2020 = true});
+TEST(Exr, ALayerOfAnyNameGivesTheColours) {
+    const Image image = ramp(8, 4);
+    for (const char* prefix : {"beauty.", "ViewLayer.Combined."}) {
+        for (const bool is_grey : {false, true}) {
+            const ExrStyle style{.is_grey = is_grey, .has_alpha = true, .prefix = prefix};
+            const Result<ExrImage> read = decode_exr(as_bytes(make_exr(image, style)), "x.exr");
+            ASSERT_TRUE(read) << message(read.error());
+            EXPECT_TRUE(read->warnings.empty());
+            EXPECT_EQ(read->image.pixel[5].r, image.pixel[5].r);
+            EXPECT_EQ(read->image.pixel[5].g, is_grey ? image.pixel[5].r : image.pixel[5].g);
+        }
+    }
+}
+
+TEST(Exr, TheFirstPartWithColoursIsRead) {
+    const Image image = ramp(8, 4);
+    const std::string bytes = make_exr_of_parts(image);
+    const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
+    ASSERT_TRUE(read) << message(read.error());
+    EXPECT_EQ(read->image.pixel, image.pixel);
+    EXPECT_TRUE(read->warnings.empty());
+    const auto depth = decode_exr_channel(as_bytes(bytes), "x.exr", {"Z"}, 8);
+    ASSERT_TRUE(depth) << message(depth.error());
+    EXPECT_EQ(depth->value[7], image.pixel[7].r);
+}
+
+// The picture's own channels come before layers, a layer that means the whole picture before
+// others, and the Y of a vector is no luminance.
+TEST(Exr, OfSeveralLayersTheWholePictureIsChosen) {
+    const auto chosen = [](std::vector<std::string> channels) {
+        ExrHeader header;
+        header.full_size = std::move(channels);
+        const auto layer = choose_layer({&header, 1});
+        return layer ? layer->red.value_or("-") : std::string("none");
+    };
+    EXPECT_EQ(chosen({"AO.B", "AO.G", "AO.R", "Combined.B", "Combined.G", "Combined.R"}),
+              "Combined.R");
+    EXPECT_EQ(chosen({"AO.B", "AO.G", "AO.R", "B", "G", "R"}), "R");
+    EXPECT_EQ(chosen({"key.blue", "key.green", "key.red"}), "key.red");
+    EXPECT_EQ(chosen({"Normal.X", "Normal.Y", "Normal.Z"}), "none");
+    EXPECT_EQ(chosen({"Normal.X", "Normal.Y", "Normal.Z", "light.Y"}), "light.Y");
+    EXPECT_EQ(chosen({"A", "R"}), "R");
+}
+
+TEST(Exr, OtherLayersOfColoursAreNamedInAWarning) {
+    const Image image = ramp(8, 4);
+    const std::string bytes = make_exr(image, {.has_layer = true});
     const Result<ExrImage> read = decode_exr(as_bytes(bytes), "x.exr");
     ASSERT_TRUE(read);
-    ASSERT_EQ(read->warnings.size(), 2u);
-    EXPECT_THAT(read->warnings[0].fault, HasSubstr("chromaticities"));
-    EXPECT_THAT(read->warnings[1].fault, HasSubstr("layers"));
+    EXPECT_EQ(read->image.pixel, image.pixel);
+    ASSERT_EQ(read->warnings.size(), 1u);
+    EXPECT_THAT(read->warnings[0].fault, HasSubstr("2 layers of colours"));
+}
+
+// White stays white; a colour becomes that of the same light in Rec. 709.
+TEST(Exr, ColoursOfOtherPrimariesAreConverted) {
+    const Chromaticities ap1{0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
+    const Image image{2, 1, {{2, 2, 2}, {1, 0, 0}}};
+    const Result<ExrImage> read =
+        decode_exr(as_bytes(make_exr(image, {.chromaticities = ap1})), "x.exr");
+    ASSERT_TRUE(read);
+    EXPECT_TRUE(read->warnings.empty());
+    EXPECT_NEAR(read->image.pixel[0].r, 2, 1e-4f);
+    EXPECT_NEAR(read->image.pixel[0].b, 2, 1e-4f);
+    EXPECT_NEAR(read->image.pixel[1].r, 1.70505f, 1e-4f);
+    EXPECT_NEAR(read->image.pixel[1].g, -0.13026f, 1e-4f);
+    const Chromaticities line{0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 0.3127f, 0.329f};
+    const Result<ExrImage> odd =
+        decode_exr(as_bytes(make_exr(image, {.chromaticities = line})), "x.exr");
+    ASSERT_TRUE(odd);
+    EXPECT_EQ(odd->image.pixel, image.pixel);
+    ASSERT_EQ(odd->warnings.size(), 1u);
+    EXPECT_THAT(odd->warnings[0].fault, HasSubstr("chromaticities"));
 }
 
 TEST(Exr, WhatIsNoExrIsRefusedByName) {
@@ -194,8 +261,8 @@ TEST(Exr, HeadersThatClaimTooMuchAreRefusedBeforeAllocating) {
     preview = with_attribute(preview, "preview", "preview", 4, &claim, 4);
     EXPECT_EQ(refused(preview), "accepted");
     std::string parts = honest;
-    parts[5] = static_cast<char>(parts[5] | 0x10);
-    EXPECT_THAT(refused(parts), HasSubstr("several parts"));
+    parts[5] = static_cast<char>(parts[5] | 0x08);
+    EXPECT_THAT(refused(parts), HasSubstr("deep data"));
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "tests/formats/image/image_files.h"
 
@@ -119,14 +120,46 @@ TEST(Hdr, ZeroExponentIsBlackAndExposureIsDividedOut) {
     EXPECT_EQ(read->warnings.size(), 1u);
 }
 
-TEST(Hdr, OtherOrientationsAndFormatsAreRefusedWithTheirText) {
+// Radiance's refer, "Picture file format": the first axis is that of the scan lines, X grows to the
+// right and Y upwards. Each text stores the same picture of 9 x 10 pixels.
+TEST(Hdr, EveryOrientationGivesTheSamePicture) {
+    const std::uint64_t width = 9, height = 10;
+    const auto pixels = codes(width, height);
+    for (const bool is_column_wise : {false, true}) {
+        for (const char x_sign : {'+', '-'}) {
+            for (const char y_sign : {'+', '-'}) {
+                std::vector<Code> stored;
+                const std::size_t lines = is_column_wise ? width : height;
+                const std::size_t across = width + height - lines;
+                for (std::size_t i = 0; i < lines * across; ++i) {
+                    std::size_t x = i % across, y = i / across;
+                    if (is_column_wise) std::swap(x, y);
+                    if (x_sign == '-') x = width - 1 - x;
+                    if (y_sign == '+') y = height - 1 - y;
+                    stored.push_back(pixels[y * width + x]);
+                }
+                const std::string along_x = std::string(1, x_sign) + "X 9";
+                const std::string along_y = std::string(1, y_sign) + "Y 10";
+                const std::string size =
+                    is_column_wise ? along_x + " " + along_y : along_y + " " + along_x;
+                SCOPED_TRACE(size);
+                const std::string start = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + size + "\n";
+                expect_decodes(start + flat(stored), pixels);
+                expect_decodes(start + old_runs(stored, across), pixels);
+                expect_decodes(start + new_runs(stored, across), pixels);
+            }
+        }
+    }
+}
+
+TEST(Hdr, OtherSizeLinesAndFormatsAreRefusedWithTheirText) {
     const auto refused = [](const std::string& bytes) {
         const Result<HdrImage> read = decode_hdr(as_bytes(bytes), "x.hdr");
         return read ? std::string("accepted") : message(read.error());
     };
-    EXPECT_THAT(refused("#?RADIANCE\n\n+Y 1 +X 1\nabcd"), HasSubstr("+Y 1 +X 1"));
-    EXPECT_THAT(refused("#?RADIANCE\n\n+X 1 -Y 1\nabcd"), HasSubstr("expected '-Y height"));
-    EXPECT_THAT(refused("#?RADIANCE\n\n-Y 1 -X 1\nabcd"), HasSubstr("-X"));
+    EXPECT_THAT(refused("#?RADIANCE\n\n+Y 1 +Y 1\nabcd"), HasSubstr("+Y 1 +Y 1"));
+    EXPECT_THAT(refused("#?RADIANCE\n\n-Y 1 *X 1\nabcd"), HasSubstr("expected '-Y height"));
+    EXPECT_THAT(refused("#?RADIANCE\n\n-Y 1\nabcd"), HasSubstr("-Y 1"));
     EXPECT_THAT(refused("#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\nabcd"),
                 HasSubstr("32-bit_rle_xyze"));
     EXPECT_THAT(refused("#?RADIANCE\n\n-Y 9999999 +X 9999999\nabcd"), HasSubstr("claims"));

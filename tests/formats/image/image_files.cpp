@@ -5,7 +5,10 @@
 #include <OpenEXR/ImfEnvmapAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
+#include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfPreviewImage.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
@@ -28,9 +31,10 @@ std::string make_exr(const Image& image, const ExrStyle& style) {
         imf::addEnvmap(header,
                        style.envmap == Envmap::cube ? imf::ENVMAP_CUBE : imf::ENVMAP_LATLONG);
     }
-    if (style.is_rec2020) {
-        imf::addChromaticities(header, imf::Chromaticities({0.708f, 0.292f}, {0.17f, 0.797f},
-                                                           {0.131f, 0.046f}, {0.3127f, 0.329f}));
+    if (style.chromaticities) {
+        const Chromaticities& c = *style.chromaticities;
+        imf::addChromaticities(
+            header, imf::Chromaticities({c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}));
     }
     header.setPreviewImage(imf::PreviewImage(4, 4));  // an attribute that must be ignored
     imf::addOwner(header, "nobody");
@@ -69,7 +73,11 @@ std::string make_exr(const Image& image, const ExrStyle& style) {
         add(prefix + "B", 2);
     }
     if (style.has_alpha) add("A", 3);
-    if (style.has_layer) add("diffuse.R", 3);
+    if (style.has_layer) {
+        for (const char* channel : {"diffuse.R", "diffuse.G", "diffuse.B"}) {
+            add(channel, 3);
+        }
+    }
     const std::filesystem::path path = temporary("made.exr");
     if (style.is_tiled) {
         header.setTileDescription(imf::TileDescription(16, 16, imf::MIPMAP_LEVELS));
@@ -83,6 +91,45 @@ std::string make_exr(const Image& image, const ExrStyle& style) {
         imf::OutputFile file(path.c_str(), header, 0);
         file.setFrameBuffer(frame);
         file.writePixels(height);
+    }
+    std::string bytes = read_bytes(path);
+    std::filesystem::remove(path);
+    return bytes;
+}
+
+std::string make_exr_of_parts(const Image& image) {
+    namespace imf = OPENEXR_IMF_NAMESPACE;
+    const int width = static_cast<int>(image.width), height = static_cast<int>(image.height);
+    const Imath::Box2i window({0, 0}, {width - 1, height - 1});
+    std::vector<imf::Header> headers(2, imf::Header(window, window));
+    headers[0].setName("depth");
+    headers[1].setName("light");
+    for (imf::Header& header : headers) {
+        header.setType(imf::SCANLINEIMAGE);
+    }
+    headers[0].channels().insert("Z", imf::Channel(imf::FLOAT));
+    for (const char* band : {"R", "G", "B"}) {
+        headers[1].channels().insert(band, imf::Channel(imf::FLOAT));
+    }
+    const std::filesystem::path path = temporary("parts.exr");
+    {
+        imf::MultiPartOutputFile file(path.c_str(), headers.data(), 2);
+        const auto* first = reinterpret_cast<const char*>(image.pixel.data());
+        const std::size_t across = sizeof(Rgb), down = across * image.width;
+        imf::FrameBuffer depth, light;
+        const auto add = [&](imf::FrameBuffer& frame, const char* name, std::size_t band) {
+            frame.insert(name, imf::Slice::Make(imf::FLOAT, first + band * sizeof(float), window,
+                                                across, down));
+        };
+        add(depth, "Z", 0);
+        add(light, "R", 0);
+        add(light, "G", 1);
+        add(light, "B", 2);
+        imf::OutputPart depth_part(file, 0), light_part(file, 1);
+        depth_part.setFrameBuffer(depth);
+        depth_part.writePixels(height);
+        light_part.setFrameBuffer(light);
+        light_part.writePixels(height);
     }
     std::string bytes = read_bytes(path);
     std::filesystem::remove(path);

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "formats/image/chromaticities.h"
 #include "formats/image/exr.h"
 #include "formats/image/image.h"
 #include "formats/opal/result.h"
@@ -18,14 +20,17 @@ struct ExrStyle {
     bool is_tiled = false;   ///< 16 x 16 tiles with mip levels
     bool is_grey = false;    ///< channel Y instead of R, G, B
     bool has_alpha = false;  ///< a channel A of 0.25
-    bool has_layer = false;  ///< a channel diffuse.R
-    bool is_rec2020 = false;
+    bool has_layer = false;  ///< channels diffuse.R, diffuse.G, diffuse.B
+    std::optional<Chromaticities> chromaticities = {};
     int min_x = 0, min_y = 0;
     Envmap envmap = Envmap::none;
     const char* prefix = "";  ///< put before the colour channels' names
 };
 
 std::string make_exr(const Image& image, const ExrStyle& style = {});
+
+/// A file of two flat parts: "depth" with a channel Z, and "light", whose colours are `image`.
+std::string make_exr_of_parts(const Image& image);
 
 /// A path for a file of this test, unique per name.
 std::filesystem::path temporary(const std::string& name);

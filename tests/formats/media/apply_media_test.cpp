@@ -59,7 +59,9 @@ TEST(ApplyMedia, WithoutStarTheOthersStayAsTheyAre) {
 TEST(ApplyMedia, WhatReplacesAThinWalledSurfaceFindsTheMaterialAsItWas) {
     Scene scene = scene_of({"Leaf", "Body"});
     for (formats::Material& material : scene.materials) {
-        material.sheet = formats::Sheet{{1, 1, 1}, {0.5f, 1, 1}, {0.1f, 0.2f, 0.3f}, false};
+        material.sheet = formats::Sheet{.reflect = {1, 1, 1},
+                                        .transmit = {0.5f, 1, 1},
+                                        .opaque_color = {0.1f, 0.2f, 0.3f}};
         material.base_color = {0.2f, 0.2f, 0.3f};
         material.double_sided = true;
     }

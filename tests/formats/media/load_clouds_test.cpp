@@ -55,6 +55,23 @@ TEST(LoadClouds, AFormulaThatEvolvesBecomesItsFrames) {
     EXPECT_TRUE(is_sound(loaded));
 }
 
+// 16 frames of 4 million texels would take seconds.
+TEST(LoadClouds, PlanOfAFormulaNeedsItsLargestThicknessAlone) {
+    const MediaFile media = read_one(R"("thickness": 250, "procedural": {"type": "cellular",
+        "coverage": 0.6, "resolution": 2048, "evolution": {"period": 3600}})");
+    Scene scene;
+    ASSERT_TRUE(formats::load_clouds(media, scene, formats::CloudDetail::largest));
+    EXPECT_EQ(scene.layers[0].thickness, std::vector{250.0f});
+    EXPECT_EQ(scene.layers[0].columns, 2048u);
+    EXPECT_EQ(scene.layers[0].frames, 16u);
+    Scene bare;
+    const auto warnings =
+        formats::load_clouds(read_one(R"("procedural": {"type": "waves", "coverage": 0})"), bare,
+                             formats::CloudDetail::largest);
+    ASSERT_TRUE(warnings);
+    EXPECT_EQ(warnings->size(), 1u) << "of a layer that is not seen";
+}
+
 TEST(LoadClouds, AnEvenLayerStaysAsItIs) {
     Scene scene;
     ASSERT_TRUE(formats::load_clouds(read_one(R"("thickness": 42)"), scene));

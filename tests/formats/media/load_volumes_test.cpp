@@ -96,7 +96,10 @@ TEST_F(LoadVolumes, FarFromTheWorldsOriginTheyHaveAnOriginOfTheirOwn) {
 
 TEST_F(LoadVolumes, TheDensityIsTheGridNamedSoOrTheOnlyOne) {
     Scene scene;
-    EXPECT_TRUE(load(media({entry("usual.vdb")}), 1, scene));
+    const auto usual = load(media({entry("usual.vdb")}), 1, scene);
+    ASSERT_TRUE(usual);
+    ASSERT_EQ(usual->size(), 1u);
+    EXPECT_THAT(usual->front().fault, HasSubstr("not used: 'soot'"));
     const auto unclear = load(media({entry("two.vdb")}), 1, scene);
     ASSERT_FALSE(unclear);
     EXPECT_THAT(fault(unclear.error()), HasSubstr("'soot', 'steam'"));

@@ -97,5 +97,23 @@ TEST(PhaseTable, MustStayInTheFoldersReach) {
     EXPECT_THAT(faults(formats::read_media(folder / "media.json")), HasSubstr("cannot be found"));
 }
 
+// Absolute, by "..", and through a link in the file's own folder.
+TEST(PhaseTable, IsReadFromAFolderThatIsAllowed) {
+    const TemporaryFolder folder, library, other;
+    write_text(library / "table.csv", "-1 1\n1 1\n");
+    std::filesystem::create_symlink(library / "table.csv", folder / "link.csv");
+    const std::vector<std::filesystem::path> right{library.path()}, wrong{other.path()};
+    for (const std::string& name : {"../" + library.path().filename().string() + "/table.csv",
+                                    (library / "table.csv").string(), std::string("link.csv")}) {
+        write_text(
+            folder / "media.json",
+            wax(R"("preset": "skin1", "phase": {"type": "table", "file": ")" + name + "\"}"));
+        EXPECT_TRUE(formats::read_media(folder / "media.json", right)) << name;
+        EXPECT_THAT(faults(formats::read_media(folder / "media.json", wrong)),
+                    AllOf(HasSubstr("leaves the asset's folder"), HasSubstr("--allow-path")))
+            << name;
+    }
+}
+
 }  // namespace
 }  // namespace opaline::tests

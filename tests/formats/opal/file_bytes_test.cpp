@@ -1,6 +1,7 @@
 #include "formats/opal/file_bytes.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <cstdint>
 #include <fstream>
@@ -27,6 +28,17 @@ TEST(FileBytes, HoldsTheWholeFileAligned) {
     ASSERT_TRUE(file);
     EXPECT_EQ(text_of(*file), text);
     EXPECT_EQ(reinterpret_cast<std::uintptr_t>(file->bytes().data()) % 64, 0u);
+}
+
+TEST(FileBytes, OfAPipeAreRefusedAtOnceThoughNobodyWritesToIt) {
+    const tests::TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+    for (const std::filesystem::path& path :
+         {folder / "pipe", std::filesystem::path("/dev/zero")}) {
+        const auto file = FileBytes::open(path);
+        ASSERT_FALSE(file);
+        EXPECT_EQ(file.error().diagnostics.front().fault, "is not a regular file");
+    }
 }
 
 // A mapped file would end the program here.

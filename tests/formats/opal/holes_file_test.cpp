@@ -45,7 +45,14 @@ TEST(HolesFile, WhatCannotBeIsRefusedByName) {
         {[](Asset& a) { a.holes.record[0].alpha = kNan; }, "not in 0 ... 1"},
         {[](Asset& a) { a.holes.record[1].cutoff = kNan; }, "not finite"},
         {[](Asset& a) { a.holes.record[1].cutoff = -1; }, "below zero"},
-        {[](Asset& a) { a.holes.record[1].reserved = 1; }, "later versions"},
+        {[](Asset& a) {
+             store_clear_share({1.5f, 1.5f}, a.holes.record[1]);
+         },
+         "as glass"},
+        {[](Asset& a) {
+             store_clear_share({0.5f, 0.5f}, a.holes.record[1]);
+         },
+         "index below 1"},
         {[](Asset& a) { a.holes.record[1].image = 1; }, "not there"},
         {[](Asset& a) { a.holes.record[1].wrap_u = Wrap{3}; }, "wrap mode"},
         {[](Asset& a) { a.holes.vertex_alpha.pop_back(); }, "alpha of 7 vertices"},

@@ -78,6 +78,23 @@ TEST(ParseReply, GridsAndFaultsArrive) {
     EXPECT_EQ(fault->fault->where + fault->fault->fault + fault->fault->remedy, "abc");
 }
 
+TEST(ParseReply, NamesOfUnreadGridsArriveAndAreFew) {
+    const auto reply_of = [](std::size_t names) {
+        return sent([&](ReplyWriter& writer) {
+            writer.write_grid("density", head_of(1, 1));
+            writer.write_brick(0, std::vector<float>(512, 1));
+            writer.write_end(std::vector<std::string>(names, "vel.x"));
+        });
+    };
+    const auto reply = parse(reply_of(2));
+    ASSERT_TRUE(reply.has_value());
+    EXPECT_EQ(reply->unread, (std::vector<std::string>{"vel.x", "vel.x"}));
+    EXPECT_EQ(parse(reply_of(1000)).value_or(Reply{}).unread.size(), kMaxGrids);
+    std::string bytes = reply_of(0);
+    bytes[bytes.size() - 1] = '\x7f';  // two thousand million names
+    EXPECT_FALSE(parse(bytes).has_value());
+}
+
 TEST(ParseReply, LongTextsAreCut) {
     const auto reply = parse(sent([](ReplyWriter& writer) {
         writer.write_fault({"", std::string(100000, 'x'), ""});

@@ -172,11 +172,53 @@ TEST(ReadVdb, NamedGridsComeInTheOrderAskedFor) {
         EXPECT_EQ(some[0].scalar.at({0, 0, 0}), 2.0f);
         EXPECT_EQ(some[1].name, "a");
         const auto all = written_and_read(file, {}, {.has_offsets = has_offsets});
-        ASSERT_EQ(all.size(), 3u) << "those that are fog volumes";
+        ASSERT_EQ(all.size(), 2u) << "those that may be densities";
         EXPECT_EQ(all[0].name, "a");
-        EXPECT_EQ(all[1].name, "b");
-        EXPECT_EQ(all[2].name, "c");
+        EXPECT_EQ(all[1].name, "c");
     }
+}
+
+// Grids that simulators write beside a density.
+TEST(ReadVdb, DensityIsReadWhateverElseTheFileHolds) {
+    const std::vector<Voxel> falling = {{{0, 0, 0}, glm::vec3(-2)}, {{1, 0, 0}, glm::vec3(1)}};
+    const std::vector<Voxel> one = {{{0, 0, 0}, glm::vec3(1)}};
+    std::vector<FileGrid> file = {{.name = "vel.x", .voxels = falling},
+                                  {.name = "velocity", .values = Values::color, .voxels = falling},
+                                  {.name = "flames"},
+                                  {.name = "temperature", .background = 1, .voxels = one},
+                                  {.name = "density", .voxels = one},
+                                  {.name = "fuel", .voxels = one}};
+    const TemporaryFolder folder;
+    for (const char* const name : {"density", "smoke"}) {
+        file[4].name = name;
+        write_file(folder / "a.vdb", file);
+        std::vector<std::string> unread;
+        const auto grids = formats::read_vdb(folder / "a.vdb", {}, with_program(), &unread);
+        ASSERT_TRUE(grids) << message_of(grids);
+        EXPECT_EQ(grids->front().name, name);
+        EXPECT_EQ(grids->size(), name == std::string("density") ? 1u : 2u) << "fuel is as likely";
+        EXPECT_EQ(grids->size() + unread.size(), file.size());
+        EXPECT_EQ(std::count(unread.begin(), unread.end(), "vel.x"), 1);
+    }
+}
+
+// Rounding of a solver: a thousandth of the largest value is none.
+TEST(ReadVdb, NegativeValuesOfRoundingAreZero) {
+    std::vector<Voxel> voxels = box_of_voxels({0, 0, 0}, {8, 8, 8});
+    voxels[0].value.x = 5;
+    for (std::size_t i = 1; i < 100; ++i) {
+        voxels[i].value.x = i % 2 == 0 ? -1e-16f : -4e-3f;
+    }
+    const auto grids = written_and_read({{.voxels = voxels}});
+    ASSERT_EQ(grids.size(), 1u);
+    EXPECT_EQ(grids[0].negative, 0u);
+    EXPECT_EQ(grids[0].scalar.at(voxels[1].at), 0.0f);
+    for (std::size_t i = 1; i < 100; ++i) {
+        voxels[i].value.x = -6e-3f;
+    }
+    const TemporaryFolder folder;
+    write_file(folder / "a.vdb", {{.voxels = voxels}});
+    EXPECT_NE(message_of(read(folder / "a.vdb")), "");
 }
 
 TEST(ReadVdb, GridsOfTheSameNameAreNumbered) {

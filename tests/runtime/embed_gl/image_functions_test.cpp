@@ -32,8 +32,8 @@ formats::Asset make_pictured() {
         gloss.roughness = 0.5f;
         gloss.f0 = {0.04f, 0.04f, 0.04f};
         gloss.image = 1;
-        gloss.wrap_u = kWraps[(p + 2) % 3];
-        gloss.wrap_v = kWraps[p];
+        gloss.wrap_u = nearest(kWraps[(p + 2) % 3]);
+        gloss.wrap_v = nearest(kWraps[p]);
         if (p == 2) continue;
         formats::HoleRecord hole;
         hole.primitive = p;

@@ -32,6 +32,7 @@ Asset asset_with_holes(bool has_vertex_alpha) {
                            .alpha = 0.9f,
                            .mode = HoleMode::blend},
                           {.primitive = 3, .alpha = 0.6f, .mode = HoleMode::blend}};
+    store_clear_share({0.7f, 1.5f}, asset.holes.record[2]);  // glass
     for (std::size_t v = 0; has_vertex_alpha && v < asset.position.size(); ++v) {
         asset.holes.vertex_alpha.push_back(0.2f + 0.1f * static_cast<float>(v % 9));
     }

@@ -117,7 +117,51 @@ TEST(FrameAsset, LooksFromTheFrontRightAndAbove) {
     const Camera camera = frame_asset(asset.view(), 30, 640, 480);
     const Vec3 d = normalize(camera.eye - camera.target);
     EXPECT_NEAR(std::atan2(d.x, d.z) * kDegrees, 30, 1e-3);
-    EXPECT_NEAR(std::asin(d.y) * kDegrees, 18, 1e-3);
+    EXPECT_NEAR(std::asin(d.y) * kDegrees, 10, 1e-3);
+}
+
+// A horizon, at elevation 0, is seen above the middle of the picture and below its top.
+TEST(FrameAsset, HorizonIsInThePictureOfUprightThingsAndFlatOnesAreSeenFromAbove) {
+    const auto elevation_of = [](Vec3 half) {
+        Asset asset = test::make_asset(8, 8);
+        test::TestMesh body = test::make_sphere({0, 0, 0}, 1.0f, 16, 8);
+        for (Vec3& p : body.position)
+            p = {half.x * p.x, half.y * p.y, half.z * p.z};
+        test::add_bare_primitive(asset, body);
+        const Camera camera = frame_asset(asset.view(), 32, 640, 480);
+        const Extent seen = project(camera, body.position);
+        EXPECT_LE(std::max({-seen.low_x, seen.high_x, -seen.low_y, seen.high_y}), 1.0);
+        EXPECT_GE(std::max(seen.high_x - seen.low_x, seen.high_y - seen.low_y), 2 * 0.8);
+        const Vec3 d = normalize(camera.eye - camera.target);
+        return std::asin(d.y) * kDegrees;
+    };
+    EXPECT_LT(elevation_of({0.5f, 2, 0.5f}), 0.75f * 16);
+    EXPECT_GT(elevation_of({2, 0.05f, 1.5f}), 20);
+}
+
+// Review 2, fault 13: balls on a floor of 2.5 times their width took a third of the picture's.
+TEST(FrameAsset, LevelGroundIsLeftOutWholeOrInTilesButABoardOnItIsNot) {
+    for (const int tiles : {1, 3}) {
+        Asset asset = test::make_asset(8, 8);
+        test::add_bare_primitive(asset, test::make_sphere({0, 1, 0}, 1.0f, 24, 12));
+        const float half = 2.5f / static_cast<float>(tiles);
+        for (int i = 0; i < tiles * tiles; ++i) {
+            const float x = half * static_cast<float>(2 * (i % tiles) - tiles + 1),
+                        z = half * static_cast<float>(2 * (i / tiles) - tiles + 1);
+            test::add_bare_primitive(
+                asset, test::make_sheet({x, 0, z}, {half, 0, 0}, {0, 0, -half}, 2, 1));
+        }
+        EXPECT_NEAR(bound_object(asset.view()).radius, 1.0, 1e-5) << tiles;
+        // A shelf above, as wide as that floor, is no ground.
+        test::add_bare_primitive(asset,
+                                 test::make_sheet({0, 4, 0}, {2.5f, 0, 0}, {0, 0, -2.5f}, 2, 1));
+        EXPECT_GT(bound_object(asset.view()).radius, 3.0) << tiles;
+    }
+    Asset board = test::make_asset(8, 8);
+    test::add_bare_primitive(board, test::make_sheet({0, 0, 0}, {9, 0, 0}, {0, 0, -9}, 2, 1));
+    test::add_bare_primitive(board, test::make_sheet({0, 0.1f, 0}, {2, 0, 0}, {0, 0, -2}, 2, 1));
+    test::add_bare_primitive(board, test::make_sphere({0, 0.6f, 0}, 0.5f, 24, 12));
+    EXPECT_GT(bound_object(board.view()).radius, 2.8);
 }
 
 TEST(FrameAsset, IsDefinedForEmptyPointlikeTinyHugeAndDamagedAssets) {

@@ -143,6 +143,7 @@ TEST(Surfaces, PlaneThroughTheEyesFeetIsSeenInExactPerspective) {
 TEST(Surfaces, ClosedMeshSeenFromInsideHasNoHoles) {
     Asset asset = test::make_asset(8, 8);
     test::add_bare_primitive(asset, test::make_sphere({0, 0, 0}, 1.0f, 37, 23));
+    asset.primitives[0].flags = formats::PrimitiveRecord::kDoubleSided;
     asset.base_color.assign(asset.position.size(), {1, 1, 1});
     const std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
     const Picture picture =
@@ -211,7 +212,7 @@ TEST(Surfaces, TextureIsFilteredInLinearLight) {
     Asset asset = test::make_asset(8, 8);
     asset.images.push_back(test::make_noise_image(5, 7));
     test::add_primitive(asset, test::make_sheet({0, 0, 0}, {1, 0, 0}, {0, -1, 0}, 1, 1.7f),
-                        {1, 4, 0, formats::Wrap::mirror, formats::Wrap::repeat});
+                        {1, 4, 0, formats::Wrap::mirror, formats::Wrap::repeat, 0, 1, true});
     asset.base_color.assign(asset.position.size(), {1, 1, 1});
     const std::vector<Rgb> radiance(asset.position.size(), {1, 1, 1});
     Camera camera = camera_at({0, 0, 2}, {0, 0, 0}, 64, 64, 0);
@@ -295,6 +296,24 @@ TEST(Picture, ImpossibleRequestsAreRefused) {
     EXPECT_TRUE(refuses(camera_at({0, 0, 1}, {0, 0, 0}, 5, 5, 40), 0));
     EXPECT_TRUE(refuses(camera_at({0, 0, 1}, {0, 0, 0}, 5, 5, 40), 9));
     EXPECT_FALSE(refuses(camera_at({0, 0, 1}, {0, 0, 0}, 5, 5, 40), 3));
+}
+
+TEST(Surfaces, OfOneSideAreNotDrawnFromBehind) {
+    for (const bool is_double_sided : {false, true}) {
+        Asset asset = test::make_asset(8, 8);
+        test::add_primitive(asset, test::make_sheet({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1, 1),
+                            {.is_double_sided = is_double_sided});
+        const std::vector<Rgb> red(asset.position.size(), Rgb{1, 0, 0});
+        asset.base_color.assign(asset.position.size(), Rgb{1, 1, 1});
+        const Environment green = test::make_lat_long(8, 4, [](Vec3) { return Rgb{0, 1, 0}; });
+        for (const float side : {1.0f, -1.0f}) {
+            const Picture picture =
+                draw(asset, red, green, camera_at({0, 0, 3 * side}, {0, 0, 0}, 5, 5, 20));
+            const bool is_seen = is_double_sided || side > 0;
+            EXPECT_EQ(at(picture, 2, 2), (is_seen ? Rgb{1, 0, 0} : Rgb{0, 1, 0}))
+                << is_double_sided << side;
+        }
+    }
 }
 
 }  // namespace

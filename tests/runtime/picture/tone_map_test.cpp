@@ -39,6 +39,20 @@ TEST(ToneMap, IsContinuousAtItsTwoBreaks) {
     }
 }
 
+// Review 2, fault 13: flames were salmon, their blue nearly as bright as their green.
+TEST(ToneMap, BrightFireGoesFromOrangeOverYellowToWhite) {
+    const Rgb fire{1.0f, 0.3f, 0.02f};  // some 1900 K
+    float green = 0;
+    for (const float gain : {1.5f, 3.0f, 6.0f}) {
+        const Rgb c = tone_map_neutral(gain * fire);
+        EXPECT_GT(c.g, green) << gain;
+        EXPECT_LT(c.b, 0.55f * c.g) << gain;
+        green = c.g;
+    }
+    EXPECT_GT(green, 0.9f);
+    EXPECT_GT(tone_map_neutral(300 * fire).b, 0.9f);
+}
+
 TEST(ToneMap, VeryBrightColoursTendToWhite) {
     const Rgb c = tone_map_neutral({1e6f, 10.0f, 10.0f});
     EXPECT_GT(c.g, 0.99f);

@@ -8,7 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "runtime/volumes/sun_shadows.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
 namespace opaline::runtime {

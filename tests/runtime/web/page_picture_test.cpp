@@ -299,7 +299,7 @@ opaline.page.ready.then(async () => {
     EXPECT_EQ(shown.console, "");
     EXPECT_EQ(
         shown.title.substr(0, shown.title.find("&amp;target")),
-        "1 × 2 false #light=white&amp;rotate=45&amp;exposure=0&amp;azimuth=13&amp;elevation=23&amp;"
+        "1 × 2 false #light=white&amp;rotate=45&amp;azimuth=13&amp;elevation=23&amp;"
         "distance=3");
     EXPECT_NE(shown.title.find("emitter=a=2,1,0.5&amp;emitter=b=0,0,0"), std::string::npos)
         << shown.title;

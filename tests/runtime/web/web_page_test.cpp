@@ -3,13 +3,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <numbers>
 #include <span>
+#include <vector>
 
 #include "formats/opal/cubemap.h"
 #include "runtime/map_geometry.h"
 #include "runtime/web/data_script.h"
 #include "runtime/web/divide_light.h"
+#include "runtime/web/packed_image.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::runtime {
@@ -27,6 +31,60 @@ TEST(DataScript, Base64IsThatOfTheStandard) {
     for (const auto& [bytes, text] : pairs) {
         EXPECT_EQ(base64_of(std::as_bytes(std::span<const char>(bytes))), text);
     }
+}
+
+// The reader of page/data.js, which the pictures of pages test.
+std::vector<std::uint16_t> unpack(std::span<const std::byte> bytes, std::size_t width,
+                                  std::size_t count) {
+    std::vector<std::uint16_t> values(count);
+    std::size_t used = 0;
+    const auto number = [&](unsigned bits) {
+        unsigned value = 0;
+        for (; bits > 0; --bits, ++used) {
+            value = 2 * value + (std::to_integer<unsigned>(bytes[used / 8]) >> (7 - used % 8) & 1u);
+        }
+        return value;
+    };
+    unsigned k = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i % 16 == 0) k = number(4);
+        unsigned folded = 0;
+        if (k != 15) {
+            while (number(1) == 1)
+                ++folded;
+            folded = (folded << k) + number(k);
+        }
+        const int a = i % (3 * width) >= 3 ? values[i - 3] : 0;
+        const int b = i >= 3 * width ? values[i - 3 * width] : 0;
+        const bool has_both = i % (3 * width) >= 3 && i >= 3 * width;
+        const int guess =
+            has_both ? std::clamp(a + b - values[i - 3 * width - 3], std::min(a, b), std::max(a, b))
+                     : a + b;
+        const int left_over =
+            folded % 2 == 1 ? -static_cast<int>(folded + 1) / 2 : static_cast<int>(folded / 2);
+        values[i] = static_cast<std::uint16_t>(guess + left_over);
+    }
+    return values;
+}
+
+TEST(PackedImage, ComesBackWithoutLossAndIsSmallWhereItIsSmooth) {
+    const std::size_t width = 64, count = 3 * width * 37 - 3;  // no whole number of blocks
+    std::vector<std::uint16_t> smooth(count), noise(count), flat(count, 7);
+    std::uint32_t state = 1;
+    for (std::size_t i = 0; i < count; ++i) {
+        smooth[i] = static_cast<std::uint16_t>(1000 * (i % 3) + i / 3 % width * 5 + i / 300);
+        state = 1664525 * state + 1013904223;
+        noise[i] = static_cast<std::uint16_t>(state >> 16);
+    }
+    const auto packed_bytes = [&](const std::vector<std::uint16_t>& values) {
+        const std::vector<std::byte> packed = pack_image(values, width);
+        EXPECT_EQ(unpack(packed, width, count), values);
+        return packed.size();
+    };
+    EXPECT_LT(packed_bytes(smooth), count / 2);
+    EXPECT_LT(packed_bytes(flat), count / 16);
+    EXPECT_LT(packed_bytes(noise), 5 * count / 2);
+    EXPECT_TRUE(pack_image({}, 1).empty());
 }
 
 TEST(DataScript, LiteralsEndNeitherTheirStringNorTheirScript) {

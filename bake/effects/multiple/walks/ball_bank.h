@@ -24,8 +24,8 @@ struct BallBankOptions;
 
 /// How walks leave balls inside a medium (README.md, "Balls"): for each of several radii, records
 /// of walks that start in the middle along a given direction, drawn once, event by event. A walk
-/// that draws one of them jumps to the surface of its ball. Records know no absorption: each has
-/// its number of scatterings and its length.
+/// that draws one of them jumps to the surface of its ball. Records hold no absorption, but the
+/// number of scatterings and the length from which it follows.
 class BallBank {
   public:
     static constexpr std::size_t kRecords = 16384;  ///< of a radius

@@ -66,8 +66,7 @@ double BandWeights::left() const {
     return static_cast<double>(all_walks_) * sum / std::max(1.0, bands);
 }
 
-// What a flight is worth in each group, over what it is worth in the one it is drawn from, times
-// `scale`.
+// The density of a flight in each group over its density in the group that drew it, times `scale`.
 BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides, float scale) const {
     const float log_scale = scale == 1 ? 0 : std::log(scale);
     PerGroup factors{1, 1, 1};
@@ -86,7 +85,7 @@ bool BandWeights::reweigh(const PerGroup& light, const PerGroup& density) {
         density_[g] *= density[g];
         sum += density_[g];
     }
-    constexpr float kLeast = 1e-30f;  // less likely than numbers tell
+    constexpr float kLeast = 1e-30f;  // smaller probabilities underflow
     if (!(sum > kLeast)) {
         return false;
     }
@@ -111,7 +110,7 @@ bool BandWeights::fly(float length, bool collides) {
 
 bool BandWeights::cross_ball(float length, float scatterings) {
     if (groups_ > 1) {
-        // What hundreds of flights are worth is beyond the range of numbers, but for its ratios.
+        // Densities of hundreds of flights underflow. Only their ratios are computed.
         PerGroup factors{};
         float most = 0;
         for (std::size_t g = 0; g < groups_; ++g) {

@@ -9,9 +9,9 @@
 namespace opaline::bake {
 
 /// A walk flies as light of one group of bands does and serves all groups. Its weights are those of
-/// the balance heuristic: what the path is worth in a band, over the sum of its densities in all
-/// groups (Veach, Guibas 1995, eq. 9 and 10), so that no band's weight is ever larger than that of
-/// walks of its own. The density in a group has the chance that a walk of its own survives.
+/// the balance heuristic: the contribution of the path in a band over the sum of its densities in
+/// all groups (Veach, Guibas 1995, eq. 9 and 10), so that no band's weight is ever larger than that
+/// of walks of its own. The density in a group has the chance that a walk of its own survives.
 struct WalkGroup {
     std::uint32_t flies_as = 0;  ///< index into WalkSpace::bands
     /// Of each group: walks that fly as it does, in the unit for which sums of weights are means.
@@ -28,6 +28,10 @@ class BandWeights {
     const std::array<float, 3>& value() const { return value_; }  ///< 0 in bands without light
     /// What is left of one walk: 1 at first, on average over all groups' walks.
     double left() const;
+    /// The same of one band.
+    double left(std::size_t band) const {
+        return static_cast<double>(all_walks_) * static_cast<double>(value_[band]);
+    }
 
     /// The walk goes on in another of the space's media. It starts in the first.
     void enter(std::uint8_t medium);

@@ -42,7 +42,8 @@ std::vector<std::uint8_t> cells_of_functions(std::uint32_t n) {
     std::vector<std::uint8_t> cells(formats::cubemap_texels(n), kCoarse);
     for (std::uint32_t k = 0; k < cells.size(); ++k) {
         const std::uint32_t face = k / (n * n), row = k / n % n, column = k % n;
-        // Details of one size fill three quarters of a square twice as wide as they are many.
+        // The details of a level with `many` squares along an edge are the part of the 2 many x 2
+        // many block outside its first many x many block.
         std::uint32_t many = ExitCells::kSide;
         while (row >= 2 * many || column >= 2 * many) {
             many *= 2;
@@ -129,7 +130,7 @@ ExitCells::Table ExitCells::make_table(glm::vec3 normal, std::span<const Part> p
         return table;
     }
     mean /= all;
-    // Cells that only touch what enters tell nothing.
+    // Leave out cells that share only an edge with the cone of entering light.
     constexpr double kLeast = 1e-5;
     Eigen::Matrix<double, kSize, kSize> variance = decltype(variance)::Zero();
     for (std::uint32_t cell = 0; cell < kCount; ++cell) {
@@ -138,8 +139,9 @@ ExitCells::Table ExitCells::make_table(glm::vec3 normal, std::span<const Part> p
             variance += p[cell] / all * value[cell] * value[cell].transpose();
         }
     }
-    // Below index 1 what enters lies within a cone of few cells, too few to tell all functions
-    // apart, and their shares of it are not known well.
+    // Below index 1 the entering light fills a cone of few cells: too few to separate all
+    // functions, and the cells' shares of the cone are inaccurate. A larger ridge keeps the fit
+    // stable.
     constexpr double kRidge = 5e-5, kRidgeOfCone = 0.02;
     variance.diagonal().array() += kRidge + kRidgeOfCone * std::max(0.0, 1 - lobe_.eta);
     const auto solver = variance.ldlt();

@@ -12,7 +12,7 @@
 
 namespace opaline::bake {
 
-/// A row of some body's light: four floats per texel, rgb-, or one where one band stands for all.
+/// A row of a body's light: four floats per texel, rgb-, or one where all bands are equal.
 struct TexelRow {
     std::span<float> values;
     std::size_t step = 4;  ///< or 1

@@ -32,11 +32,11 @@ class ExitLight {
     void add_exit(std::uint32_t sample, const WalkExit& exit, float scale,
                   ExitCells::Sums& sums) const;
 
-    /// Adds a sample's light as its exits see it: to a row, and, of what is left for `add_cells`,
-    /// to `cells`.
+    /// Adds the light of a sample at its exits to a row. The part by cells goes to `cells`, for
+    /// `add_cells`.
     void add(std::uint32_t sample, const ExitCells::Sums& sums, const TexelRow& row,
              ExitCells::Cells& cells) const;
-    /// Adds what `add` left of all samples to the row.
+    /// Adds the cells that `add` collected from all samples to the row.
     void add_cells(const ExitCells::Cells& cells, const TexelRow& row) const;
     /// `scale` times the weight of an exit at a sample, by band; 0 where it has no area.
     glm::vec4 weigh(std::uint32_t sample, const WalkExit& exit, float scale) const;

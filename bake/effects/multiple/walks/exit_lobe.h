@@ -7,8 +7,8 @@
 
 namespace opaline::bake {
 
-/// What is known of the direction w_e of an exit: of one direction, or of the mean over walks that
-/// nothing else tells apart.
+/// Moments of the direction w_e of an exit: of one direction, or of the mean over all walks with
+/// the same way and number of scatterings.
 struct ExitDirection {
     glm::vec3 mean{0};    ///< of w_e
     glm::mat3 square{0};  ///< mean of w_e w_e^T

@@ -134,6 +134,13 @@ void find_seen(const WalkSpace& space, glm::vec3 from, std::span<const glm::vec3
     }
 }
 
+bool is_around_vertex(const WalkSpace& space, const WalkHit& hit, glm::vec3 vertex) {
+    const formats::Primitive& p = space.scene->primitives[hit.primitive];
+    const std::uint32_t* const corner = &p.index[hit.first_index];
+    return std::any_of(corner, corner + 3,
+                       [&](std::uint32_t v) { return p.position[v] == vertex; });
+}
+
 glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit) {
     const formats::Primitive& p = space.scene->primitives[hit.primitive];
     const std::uint32_t* corner = &p.index[hit.first_index];

@@ -34,6 +34,9 @@ std::vector<std::optional<WalkHit>> find_hits(const WalkSpace& space, glm::vec3 
 void find_seen(const WalkSpace& space, glm::vec3 from, std::span<const glm::vec3> to,
                std::vector<std::uint8_t>& seen);
 
+/// Whether a corner of the hit triangle lies at `vertex`, exactly.
+bool is_around_vertex(const WalkSpace& space, const WalkHit& hit, glm::vec3 vertex);
+
 /// The interpolated normal, unit; the triangle's own where that faces away from it.
 glm::vec3 smooth_normal(const WalkSpace& space, const WalkHit& hit);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "bake/effects/multiple/walks/find_hit.h"
@@ -23,24 +24,29 @@ class FlightTracer {
         }
     }
 
-    // The share of the view's light that is lost through a hole. `next`: what it meets first.
-    float follow(glm::vec3 position, glm::vec3 direction, int shells, std::uint32_t view,
-                 std::optional<WalkHit> next) {
+    // What of a view's light met neither the medium nor its boundary.
+    struct Rest {
+        float lost = 0;      // through a hole; mean of the groups
+        PerGroup unknown{};  // that, and what met another material
+    };
+    // `next`: what the view meets first.
+    Rest follow(glm::vec3 position, glm::vec3 direction, int shells, std::uint32_t view,
+                std::optional<WalkHit> next) {
         constexpr int kMostSurfaces = 16;
         constexpr float kLeast = 1e-3f;
         PerGroup left{1, 1, 1};
         for (int i = 0; i < kMostSurfaces; ++i) {
             if (!next) {
                 scatter_along(position, direction, to_box(position, direction), view, left);
-                return mean(left);
+                return {mean(left), left};
             }
             const WalkHit hit = *next;
             const float way = glm::distance(hit.position, position);
             if (!hit.is_own) {
-                // What stands in the body, or, through a hole, far from it.
+                // A surface inside the body or, through a hole, far away.
                 const float box = to_box(position, direction);
                 scatter_along(position, direction, std::min(way, box), view, left);
-                return way > box ? mean(left) : 0;
+                return {way > box ? mean(left) : 0, left};
             }
             scatter_along(position, direction, way, view, left);
             const float side = glm::dot(direction, hit.flat) > 0 ? 1.0f : -1.0f;
@@ -50,7 +56,7 @@ class FlightTracer {
             } else {
                 shells = 1;
                 if (!reflect(hit, position, direction, left) || mean(left) < kLeast) {
-                    return 0;
+                    return {};
                 }
             }
             next.emplace();
@@ -59,7 +65,7 @@ class FlightTracer {
                 next.reset();
             }
         }
-        return 0;
+        return {};
     }
 
   private:
@@ -135,17 +141,39 @@ class FlightTracer {
     FirstFlight& nodes_;
 };
 
+// Beside a sharp edge half of all views leave the body after next to no way. What scatters on that
+// way is as bright as what they would see with more of the medium before them.
+void fill_crossed(std::span<FlightNode> nodes, const PerGroup& unknown) {
+    PerGroup scattered{};
+    for (const FlightNode& node : nodes) {
+        for (std::size_t g = 0; g < scattered.size(); ++g) {
+            scattered[g] += node.weight[g];
+        }
+    }
+    for (FlightNode& node : nodes) {
+        for (std::size_t g = 0; g < scattered.size(); ++g) {
+            node.weight[g] *= scattered[g] > 0 ? (1 - unknown[g]) / scattered[g] : 0;
+        }
+    }
+}
+
 }  // namespace
 
-FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views,
-                               const BodyPoint& point) {
+FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views, const BodyPoint& point,
+                               bool fills_crossed) {
     FirstFlight nodes;
     const int shells = std::max(1, count_shells(space, point.inner, -point.normal));
     FlightTracer tracer(space, nodes);
     const std::vector<std::optional<WalkHit>> first = find_hits(space, point.inner, views.into);
     float lost = 0;
     for (std::uint32_t v = 0; v < views.into.size(); ++v) {
-        lost += views.share[v][0] * tracer.follow(point.inner, views.into[v], shells, v, first[v]);
+        const std::size_t before = nodes.size();
+        const FlightTracer::Rest rest =
+            tracer.follow(point.inner, views.into[v], shells, v, first[v]);
+        lost += views.share[v][0] * rest.lost;
+        if (fills_crossed || (first[v] && is_around_vertex(space, *first[v], point.position))) {
+            fill_crossed(std::span(nodes).subspan(before), rest.unknown);
+        }
     }
     if (lost > 0 && lost < 0.5f) {
         for (FlightNode& node : nodes) {

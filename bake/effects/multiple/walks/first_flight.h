@@ -25,9 +25,12 @@ struct FlightNode {
 using FirstFlight = std::vector<FlightNode>;
 
 /// First flights of walks from a receiver, as follow_walk draws them in the space's first medium,
-/// with their reflections inside. Where a mesh has a hole a flight goes on to the space's box; the
-/// other flights make up for what is left of it there.
-FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views,
-                               const BodyPoint& point);
+/// with their reflections inside. Through a hole of the mesh a flight goes on to the space's box;
+/// the other flights are scaled up to replace the light that is lost there. Light that leaves the
+/// body unscattered through a triangle of the point's own vertex counts as bright as the rest of
+/// its view, as `transmission` leaves it out; `fills_crossed`: so does all light that leaves
+/// unscattered. Light from another material does not.
+FirstFlight trace_first_flight(const WalkSpace& space, const ViewSet& views, const BodyPoint& point,
+                               bool fills_crossed = false);
 
 }  // namespace opaline::bake

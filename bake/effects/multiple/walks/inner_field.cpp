@@ -213,7 +213,7 @@ void InnerField::weigh(const WalkSpace& space, const BodyPoint& point, const Vie
             }
         }
     }
-    // Slopes that no site tells about are 0.
+    // Slopes along directions without sites are 0.
     constexpr double kRidge = 1e-4;
     for (Eigen::Index i = 1; i < size; ++i) {
         matrix(i, i) += kRidge * matrix(0, 0);

@@ -34,9 +34,9 @@ class InnerField {
     bool empty() const { return position_.empty(); }
     std::size_t size() const { return position_.size(); }
 
-    /// Weights of sites for the first `rows` rows of `views`, 1, 4 or 9. Their sum is what the
-    /// flight scatters, in each row. Only sites in straight view of the point count, unless there
-    /// are too few. Overwrites `weights`; none where nothing is scattered or there is no site.
+    /// Weights of sites for the first `rows` rows of `views`, 1, 4 or 9. Their sum is the share of
+    /// light that the flight scatters, in each row. Only sites visible from the point count, unless
+    /// they are too few. Overwrites `weights`; none where nothing is scattered or there is no site.
     void weigh(const WalkSpace& space, const BodyPoint& point, const ViewSet& views,
                const FirstFlight& flight, std::uint32_t rows,
                std::vector<InnerWeight>& weights) const;

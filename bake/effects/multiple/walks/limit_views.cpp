@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kSteps = 64;  // of the cosine
 
-// In proportion to what a row makes of light that is even over texels: the first coefficient of
+// Proportional to the row's response to light that is equal in all texels: the first coefficient of
 // each face is its mean.
 float under_even_light(std::span<const float> row, std::uint32_t stride, std::uint32_t band) {
     const std::size_t face = row.size() / stride / 6;

@@ -1,6 +1,7 @@
 #include "bake/effects/multiple/walks/site_rows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -53,6 +54,9 @@ class SiteWalker {
                 }
             }
         }
+        if (options_.orders.fills_crossed) {
+            fill_crossed(own);
+        }
         add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
         take_out_mean(mean_seen, static_cast<float>(number));
         counts += own;
@@ -60,6 +64,17 @@ class SiteWalker {
     }
 
   private:
+    void fill_crossed(const WalkCounts& counts) {
+        for (std::size_t b = 0; b < 3; ++b) {
+            std::array<double, 3> share{};
+            share[b] = 1;
+            const auto factor = static_cast<float>(counts.crossed_correction(share));
+            for (WalkExit& exit : exits_) {
+                exit.weight[b] *= factor;
+            }
+        }
+    }
+
     // Its lobes' mean would be 0 over more walks. What it makes of the light that all views have in
     // common is noise.
     void take_out_mean(const ViewLobe& sum, float walks) {

@@ -12,8 +12,8 @@
 namespace opaline::bake {
 
 /// Rows of sites: Haar vectors with few entries, each with a value per band. The first row of a
-/// site is T_0, the mean over views. Three more, if there are four, say how it changes with the
-/// view (README.md, "Views"): seen along w' inside, it is row 0 + sum of (w' - m n)_k row k + 1.
+/// site is T_0, the mean over views. Three more, if there are four, are its slopes over the view
+/// (README.md, "Views"): seen along w' inside, it is row 0 + sum of (w' - m n)_k row k + 1.
 /// Five more, of nine, add functions of degree two (view_fit.h).
 struct SiteRows {
     struct Block {
@@ -43,9 +43,9 @@ std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
                                         const Context& context);
 
 /// For each site the mean of its walks' exits, each as the light of a sample nearby: T_0
-/// (README.md, "The estimator"). `subtract(site, row)`, if there is one, subtracts what is known of
-/// a row, four floats per texel (one with one band), before it is truncated. No walk is stored. The
-/// same bits for any number of threads; incomplete if the context is cancelled.
+/// (README.md, "The estimator"). `subtract(site, row)`, if there is one, subtracts the dipole's
+/// row, four floats per texel (one with one band), before the row is truncated. No walk is stored.
+/// The same bits for any number of threads; incomplete if the context is cancelled.
 SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> starts,
                          const ExitLight& light, const SiteRowOptions& options,
                          const std::function<void(std::size_t, std::span<float>)>& subtract,

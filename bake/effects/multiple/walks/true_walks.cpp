@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
 
-// Of the bands that a walk serves; all of it where one band stands for all.
+// Luminance of the bands that a walk serves; all of it where the bands are equal.
 double share_of(const WalkBands& bands, bool is_grey) {
     double share = 0;
     for (std::size_t b = 0; b < 3; ++b) {
@@ -66,10 +66,19 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
     for (std::size_t g = 0; g < space.bands.size(); ++g) {
         group.walks[g] = static_cast<float>(share_of(space.bands[g], is_grey) / shares);
     }
-    const WalkStart start{point.inner, point.normal, point.normal,
-                          std::max(1, count_shells(space, point.inner, -point.normal)),
-                          light.along_normal};
+    WalkStart start{point.inner, point.normal, point.normal,
+                    std::max(1, count_shells(space, point.inner, -point.normal)), light.seen};
+    start.vertex = point.position;
     std::vector<WalkExit> exits;
+    std::array<double, 3> seen_bands{};
+    for (const WalkBands& bands : space.bands) {
+        for (std::size_t b = 0; b < 3; ++b) {
+            seen_bands[b] += bands.member[b] ? (is_grey ? 1 : kLuminance[b]) / shares : 0;
+        }
+    }
+    const auto correction = [&](const WalkCounts& counts) {
+        return counts.correction() * counts.crossed_correction(seen_bands);
+    };
     Luminance irradiance(lights), diffuse(lights);
     std::uint32_t walk = 0;
     for (Luminance* estimate : {&estimates.first, &estimates.second}) {
@@ -84,7 +93,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
             }
             exits.clear();
             follow_walk(space, group, start, orders, random, exits, counts);
-            // One exit stands for all of the walk, drawn in proportion to its weight.
+            // One exit represents the walk, drawn in proportion to its weight.
             double sum = 0;
             const WalkExit* exit = nullptr;
             for (const WalkExit& e : exits) {
@@ -120,7 +129,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
             }
         }
         for (double& value : *estimate) {
-            value *= counts.correction();
+            value *= correction(counts);
         }
         traced += counts.rays;
     }

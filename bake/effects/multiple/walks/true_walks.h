@@ -17,10 +17,10 @@ struct WalkLight {
     const RayScene& rays;
     const SunRays& suns;
     const SmoothLights& smooth;
-    ExitLobe lobe;              ///< of the medium's boundary
-    double escape = 1;          ///< c_exit
-    std::uint32_t walks = 0;    ///< for each of the two estimates
-    bool along_normal = false;  ///< seen so, instead of the mean over all views
+    ExitLobe lobe;            ///< of the medium's boundary
+    double escape = 1;        ///< c_exit
+    std::uint32_t walks = 0;  ///< for each of the two estimates
+    glm::vec3 seen{0};        ///< unit, inside, toward the eye; 0: the mean over all views
     /// Of other light, which enters as diffuse light does; null or empty: there is none.
     const OtherLight::TrueIrradiance* other = nullptr;
 };

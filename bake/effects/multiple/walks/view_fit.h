@@ -7,7 +7,7 @@
 
 namespace opaline::bake {
 
-/// Rows that say how walked light changes with the view, beside T_0: three of degree one, along the
+/// Rows for the dependence of walked light on the view, beside T_0: three of degree one, along the
 /// axes, and five of degree two, of the harmonics Y_4 to Y_8.
 inline constexpr std::uint32_t kFirstDegree = 3, kAllDegrees = 8;
 
@@ -39,9 +39,9 @@ ViewFit make_view_fit(double eta);
 /// P_2(c') - a - b (c' - m).
 double bend_of(const ViewFit& fit, double cosine);
 
-/// What a walk that is seen along `seen` adds to rows of degree one and two, for weight times light
-/// of 1: the least-squares fit over walks. Their mean under p is 0. Both unit. `second`: also those
-/// of degree two, which are 0 otherwise.
+/// Contribution of a walk seen along `seen` to rows of degree one and two, for weight times light
+/// of 1: the least-squares fit over walks. Its mean under p is 0. Both unit. `second`: also rows of
+/// degree two, which are 0 otherwise.
 using ViewLobe = std::array<float, kAllDegrees>;
 ViewLobe eval_view_lobe(const ViewFit& fit, glm::vec3 normal, glm::vec3 seen, bool second);
 

@@ -68,7 +68,7 @@ ViewSet make_view_set(const ViewFit& fit, double eta, glm::vec3 normal, std::uin
     // At .5 the error along the normal falls to a third of that at 0, over all views it grows by a
     // twentieth (README.md, "Views").
     constexpr double kNormal = 0.5;
-    constexpr double kRidge = 1e-3;  // refracted views tell some functions hardly apart
+    constexpr double kRidge = 1e-3;  // refracted views hardly separate some functions
     ViewSet views;
     add_entering(eta, normal, views);
     if (rows == 1) {

@@ -19,9 +19,9 @@ struct ViewSet {
 };
 
 /// `eta` > 0 of the boundary, `fit` made for it, `normal` unit, `rows` 1, 4 or 9. T_0 is the mean
-/// over the light that enters. The rows by view are the least-squares fit of what is left, half of
-/// the weight on that light and half on the normal alone: views along it come out within a fraction
-/// of what others do.
+/// over the light that enters. The rows by view are the least-squares fit of T - T_0, half of the
+/// weight on that light and half on the normal alone, so that views along the normal have a smaller
+/// error than others.
 ViewSet make_view_set(const ViewFit& fit, double eta, glm::vec3 normal, std::uint32_t rows);
 
 }  // namespace opaline::bake

@@ -26,8 +26,8 @@ float transmittance(float cosine, float eta) {
 // Into the half space below both normals. Refracted by the smooth one; where that leads above the
 // facet, by the facet's.
 glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRandom& random) {
-    if (start.is_along_normal) {
-        return -start.normal;
+    if (start.seen != glm::vec3(0)) {
+        return -start.seen;
     }
     float cosine = 1, azimuth = 0;
     constexpr int kMostTries = 1000;  // one in a hundred is accepted at the most extreme index
@@ -69,6 +69,7 @@ class Walk {
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
         position_ = start_ = start.position;
+        vertex_ = start.vertex;
         free_.set(position_, 0, start.depth);
         if (start.arrival != glm::vec3(0)) {
             direction_ = start.arrival;
@@ -106,8 +107,8 @@ class Walk {
         return bodies_.top() < space_.balls.size() ? space_.balls[bodies_.top()].get() : nullptr;
     }
 
-    // Whether a ball of the bank has room here. Where the grid is too coarse to tell, the nearest
-    // triangle is looked for, unless the walk cannot have come far enough from one.
+    // Whether a ball of the bank fits here. Where the grid is too coarse to decide, searches for
+    // the nearest triangle, unless the walk cannot have gone far enough from one.
     bool may_jump() {
         const BallBank* const bank = balls();
         if (bank == nullptr || !(weight_.sigma_t() > 0)) {
@@ -139,6 +140,9 @@ class Walk {
         position_ += jump.way / sigma_t;
         direction_ = jump.direction;
         length_ += jump.length / sigma_t;
+        if (scatterings_ == 0 && jump.scatterings > 0) {
+            add_left(1, counts_.scattered);
+        }
         scatterings_ += static_cast<std::uint32_t>(jump.scatterings);
         return weight_.cross_ball(jump.length / sigma_t, jump.scatterings) && survives();
     }
@@ -146,6 +150,19 @@ class Walk {
     float flight_length() {
         const float depth = -std::log(1 - random_.next());
         return weight_.sigma_t() > 0 ? depth / weight_.sigma_t() : kForever;
+    }
+
+    void count_scattering() {
+        if (scatterings_++ == 0) {
+            add_left(1, counts_.scattered);
+        }
+    }
+
+    // The weight in walks times `share`.
+    void add_left(float share, std::array<double, 3>& sum) const {
+        for (std::size_t b = 0; b < 3; ++b) {
+            sum[b] += static_cast<double>(share) * weight_.left(b);
+        }
     }
 
     bool give_up(std::uint64_t& count) {
@@ -202,7 +219,7 @@ class Walk {
         if (const auto& field = medium().field) {
             return collide_in(*field);
         }
-        ++scatterings_;
+        count_scattering();
         turn();
         return weight_.absorb() && survives();
     }
@@ -214,7 +231,7 @@ class Walk {
         if (field.has_density() && !(random_.next() < field.density(position_))) {
             return true;
         }
-        ++scatterings_;
+        count_scattering();
         turn();
         const glm::vec3 albedo = field.albedo(position_);
         return weight_.absorb({albedo.x, albedo.y, albedo.z}) && survives();
@@ -309,6 +326,10 @@ class Walk {
             leave(hit, normal, cosine, passed);
             exits_.back().is_once = !counts;
         }
+        if (scatterings_ == 0 &&
+            (orders_.fills_crossed || (!is_reflected_ && is_around_vertex(space_, hit, vertex_)))) {
+            add_left(passed, counts_.crossed);
+        }
         is_reflected_ = true;
         position_ = hit.position - 2 * hit.error * hit.flat;
         direction_ = glm::normalize(direction_ - 2 * glm::dot(direction_, normal) * normal);
@@ -344,7 +365,7 @@ class Walk {
     std::vector<WalkExit>& exits_;
     WalkCounts& counts_;
 
-    glm::vec3 start_{0}, position_{0}, direction_{0};
+    glm::vec3 start_{0}, vertex_{0}, position_{0}, direction_{0};
     float length_ = 0;     // of the walk so far
     float clearance_ = 0;  // where it may jump [m]
     FreeBall free_;
@@ -365,6 +386,10 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     endless += other.endless;
     buried += other.buried;
     unfinished += other.unfinished;
+    for (std::size_t b = 0; b < 3; ++b) {
+        scattered[b] += other.scattered[b];
+        crossed[b] += other.crossed[b];
+    }
     return *this;
 }
 

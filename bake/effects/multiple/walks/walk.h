@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "bake/base/rng.h"
@@ -63,27 +64,29 @@ class WalkRandom {
 
 /// A point just inside a body from which walks start, and the surface through which they are seen.
 struct WalkStart {
-    glm::vec3 position{0};         ///< [m], inside
-    glm::vec3 normal{0};           ///< unit, outward, of the smooth surface: it refracts
-    glm::vec3 flat{0};             ///< unit, outward, of the facet: walks start below it
-    int shells = 1;                ///< of the medium, around the point
-    bool is_along_normal = false;  ///< seen along the normal, instead of from everywhere
+    glm::vec3 position{0};  ///< [m], inside
+    glm::vec3 normal{0};    ///< unit, outward, of the smooth surface: it refracts
+    glm::vec3 flat{0};      ///< unit, outward, of the facet: walks start below it
+    int shells = 1;         ///< of the medium, around the point
+    glm::vec3 seen{0};      ///< unit, inside, toward the eye that sees it; 0: seen from everywhere
     /// Of walks that begin with a scattering at `position`: the way that they came, away from the
     /// eye. 0 of those that begin at the surface.
     glm::vec3 arrival{0};
     float depth = 0;  ///< [m] of `position` below the surface that the site lies on
+    /// [m], at which the walk is seen, where that is a vertex.
+    glm::vec3 vertex{std::numeric_limits<float>::quiet_NaN()};
 };
 
-/// Light that a walk finds: what arrives at `position` from outside along `direction` is seen at
-/// the start with `weight`.
+/// Light that a walk finds: radiance that arrives at `position` from outside along `direction`
+/// reaches the start with `weight`.
 struct WalkExit {
     glm::vec3 position{0};          ///< [m], on the boundary
     glm::vec3 normal{0};            ///< unit, outward, smooth
     glm::vec3 direction{0};         ///< unit, outside, away from the body
     std::array<float, 3> weight{};  ///< per band; 0 in bands that never scatter
-    /// How often it was scattered, over WalkSpace::diffuse_after. From 1 on `direction` says no
-    /// more of where the walk has been than `drift`, the way from the start over the length of the
-    /// walk: the mean of all directions inside.
+    /// Number of scatterings over WalkSpace::diffuse_after. From 1 on `direction` is as
+    /// uncorrelated with the walk's past as `drift`, the way from the start over the length of the
+    /// walk, which is the mean of all directions inside.
     float turned = 0;
     glm::vec3 drift{0};
     std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle
@@ -103,12 +106,27 @@ struct WalkCounts {
     std::uint64_t buried =
         0;                  ///< given up where more media lie in each other than MediumStack holds
     double unfinished = 0;  ///< weight that lost, endless and buried walks still had, in walks
+    /// Weight, band by band, in walks: that scattered at all; and that left through the boundary
+    /// before and counts as bright as the rest: at once, through a triangle of WalkStart::vertex,
+    /// or as WalkOrders says.
+    std::array<double, 3> scattered{}, crossed{};
 
-    /// The factor by which the walks that ended stand for those that did not (README.md, "The
+    /// Factor on finished walks that replaces the light of unfinished ones (README.md, "The
     /// estimator").
     double correction() const {
         const auto all = static_cast<double>(walks);
         return unfinished < 0.5 * all ? all / (all - unfinished) : 1;
+    }
+    /// The factor by which walks that scatter stand for those `crossed`, of bands that count by
+    /// `shares`. A quotient, as nearly all may cross: what scatters is known far better than 1 less
+    /// what does not.
+    double crossed_correction(const std::array<double, 3>& shares) const {
+        double own = 0, other = 0;
+        for (std::size_t b = 0; b < 3; ++b) {
+            own += shares[b] * scattered[b];
+            other += shares[b] * crossed[b];
+        }
+        return own > 0 ? (own + other) / own : 1;
     }
 
     WalkCounts& operator+=(const WalkCounts& other);
@@ -117,11 +135,13 @@ struct WalkCounts {
 /// Which light counts.
 struct WalkOrders {
     /// Light scattered this often at least; less often, if it was also reflected at a boundary
-    /// inside or went through another medium, but not without any scattering. 2: what is not single
+    /// inside or went through another medium, but not without any scattering. 2: all but single
     /// scattering; 1: all.
     std::uint32_t least = 2;
     /// Light scattered once alone counts for diffuse light as well: its exits are marked.
     bool marks_once = false;
+    /// Light that leaves the body unscattered counts as bright as the rest: nothing else holds it.
+    bool fills_crossed = false;
 };
 
 /// Follows one walk backwards from the eye (README.md, "The estimator"). The start's direction is

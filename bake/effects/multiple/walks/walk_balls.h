@@ -7,9 +7,9 @@
 
 namespace opaline::bake {
 
-/// Radius [mean free paths] of the largest balls that walks through a medium are worth having: at
-/// most an eighth of the body's diagonal, `size` [mean free paths], and as far as light reaches
-/// before it is absorbed; 0 where balls save no time (README.md, "Balls"). `g`: the mean cosine.
+/// Radius [mean free paths] of the largest useful balls in a medium: at most an eighth of the
+/// body's diagonal, `size` [mean free paths], and the distance that light reaches before it is
+/// absorbed; 0 where balls save no time (README.md, "Balls"). `g`: the mean cosine.
 double largest_ball(double albedo, double g, double size);
 
 /// Gives a space banks of balls for its media that do not vary, and a finer grid of clearances.

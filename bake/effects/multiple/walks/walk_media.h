@@ -20,8 +20,8 @@ struct WalkBands {
     std::array<bool, 3> member{};
 };
 
-/// One of the media that a walk may go through: its stated coefficients. `field` says how much less
-/// of them there is at a point.
+/// One of the media that a walk may go through: its largest coefficients. `field` scales them down
+/// at a point.
 struct WalkMedium {
     float eta = 1;  ///< relative to the outside of everything
     PhaseTable phase;
@@ -46,8 +46,8 @@ struct WalkMedia {
 /// At most this many different media of one space.
 inline constexpr std::size_t kMostWalkMedia = 255;
 
-/// Without `field`. `given`: the body's own medium, then those inside it; not empty. `grey`: the
-/// first band stands for all three. Media beyond kMostWalkMedia have the place kNoWalkMedium.
+/// Without `field`. `given`: the body's own medium, then those inside it; not empty. `grey`: all
+/// bands equal the first. Media beyond kMostWalkMedia have the place kNoWalkMedium.
 WalkMedia make_walk_media(std::span<const formats::Medium* const> given, bool grey);
 inline constexpr std::uint8_t kNoWalkMedium = 255;
 

@@ -73,8 +73,8 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
             space.media[place].field.emplace(scene, materials[m]);
         }
     }
-    // Three that are effectively isotropic (README.md, "The light at an exit"). How far a walk has
-    // come says nothing of its direction where media follow one another.
+    // Three that are effectively isotropic (README.md, "The light at an exit"). Where media follow
+    // one another, the length of a walk does not predict its direction.
     space.diffuse_after =
         space.media.size() > 1
             ? std::numeric_limits<std::uint32_t>::max()

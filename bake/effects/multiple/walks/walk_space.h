@@ -20,7 +20,7 @@ struct WalkSpace {
     const EmbreeScene* triangles = nullptr;  ///< of the whole scene
     std::uint32_t material = 0;
     float eta = 1;
-    bool is_grey = false;           ///< the first band stands for all three
+    bool is_grey = false;           ///< all bands equal the first
     std::vector<WalkBands> bands;   ///< 1 to 3; empty: nothing scatters
     std::vector<WalkMedium> media;  ///< the body's own, then others inside it
     /// Of each material of the scene, its medium's place in `media`; kNoWalkMedium: walks end
@@ -46,7 +46,7 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
 /// Number of the medium's shells around a point, counted along lines to infinity: every surface of
 /// the medium that a line leaves through, less those that it enters through. 1 just inside a closed
 /// body; 0 or less: the point lies outside, or the mesh has holes all around. A line through a hole
-/// miscounts: the answer is what two lines agree on, the first of them along `direction`.
+/// miscounts, so two lines must agree, the first of them along `direction`.
 int count_shells(const WalkSpace& space, glm::vec3 point, glm::vec3 direction);
 
 /// The mean free path [m] between effectively isotropic events, 1 / (sigma_t - g sigma_s), of the

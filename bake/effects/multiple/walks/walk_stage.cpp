@@ -84,6 +84,7 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
         stage.inner = InnerField(starts, static_cast<float>(radius), static_cast<float>(path),
                                  formats::mean_cosine(medium.phase) == 0);
         stage.space = space;
+        stage.fills_crossed = options.rows.orders.fills_crossed;
         return stage;
     }
     std::vector<float> tints;
@@ -148,7 +149,7 @@ SiteRowSum sum_inner_rows(const WalkStage& stage, const BodyPoint& point, std::s
     const WalkSpace& space = *stage.space;
     const ViewSet seen =
         make_view_set(stage.view_fit, static_cast<double>(space.eta), point.normal, rows);
-    const FirstFlight flight = trace_first_flight(space, seen, point);
+    const FirstFlight flight = trace_first_flight(space, seen, point, stage.fills_crossed);
     std::vector<InnerWeight> weights;
     stage.inner.weigh(space, point, seen, flight, rows, weights);
     for (const InnerWeight& w : weights) {

@@ -17,11 +17,11 @@
 
 namespace opaline::bake {
 
-/// How many sites stand how far apart, and how far around a receiver they count.
+/// Number and spacing of sites, and the radius around a receiver within which they count.
 struct SitePlan {
     std::uint32_t sites = 0;
     double radius = 0;  ///< [m]
-    /// Sites are too far apart for the transport itself; they say how far another model is off.
+    /// Sites are too far apart for the transport itself: they hold its difference to the dipole.
     bool is_residual = false;
 };
 
@@ -42,11 +42,12 @@ double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 /// How far around a receiver's flight sites inside count [m]. `mean_free_path` [m] > 0.
 double inner_radius(const SitePlan& plan, double mean_free_path);
 
-/// Rows at sites, from which those of receivers follow.
+/// Rows at sites, from which rows of receivers are interpolated.
 struct WalkStage {
     SiteField field, view_field;     ///< the latter of rows by view: they vary less and are noisier
     InnerField inner;                ///< instead of both, where sites are inside
     std::optional<WalkSpace> space;  ///< of the inner field
+    bool fills_crossed = false;      ///< of its flights, as of WalkOrders
     SiteRows rows;
     ViewFit view_fit;  ///< of the boundary
     WalkCounts counts;
@@ -77,9 +78,8 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
                      const Context& context);
 
 /// Adds the row of a receiver, T_0, times `scale`, from sites on the surface, to four floats per
-/// texel (one with one band), and those that say how it changes with the view (SiteRows) to
-/// `views`: none, 3 or 8, one after the other. Precondition: the stage has as many, and no sites
-/// inside.
+/// texel (one with one band), and the rows by view (SiteRows) to `views`: none, 3 or 8, one after
+/// the other. Precondition: the stage has as many, and no sites inside.
 void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
                      std::span<float> rgbx, std::span<float> views);
 

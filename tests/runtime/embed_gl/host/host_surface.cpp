@@ -74,6 +74,9 @@ void main() {
                                base_color);
         sent = opaline_glossy_diffuse(gloss, v_radiance, base_color, view) +
                opaline_glossy_mirrored(gloss, light_from_world, view, v_openness);
+        if (gloss_wrap.z == 0) {
+            sent += opaline_glossy_mirrored_surfaces(gloss, v_radiance, view, v_openness);
+        }
     }
     sent += emission * sample_or_one(emission_image, emission_wrap, true);
     color = vec4(sent, 1.0);

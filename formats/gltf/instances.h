@@ -1,0 +1,27 @@
+#pragma once
+
+#include <glm/glm.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "formats/gltf/document.h"
+#include "formats/gltf/report.h"
+#include "formats/gltf/resources.h"
+
+namespace opaline::formats::gltf {
+
+/// EXT_mesh_gpu_instancing of every node; empty where a node does not have it.
+std::vector<Attributes> read_node_instances(const nlohmann::json& root, Report& report);
+
+/// Number of places of a node's mesh: as many as its attributes have values, or one.
+std::uint64_t instance_count(const Document& document, const Node& node);
+
+/// Those places, in the node's frame: TRANSLATION, ROTATION and SCALE as of a node, each of them
+/// floats or normalised integers; the identity where one is missing. Empty, with errors named after
+/// `where`, if they do not conform. Precondition: validate_document found no fault.
+std::vector<glm::dmat4> instance_transforms(const Document& document,
+                                            const std::vector<Bytes>& buffers, const Node& node,
+                                            const std::string& where, Report& report);
+
+}  // namespace opaline::formats::gltf
