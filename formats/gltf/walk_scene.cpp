@@ -57,7 +57,7 @@ std::vector<std::uint32_t> roots_of_list(const Document& document, std::uint32_t
     std::vector<std::uint32_t> roots;
     std::vector<bool> is_placed(parent.size(), false);
     std::size_t repeated = 0, below = 0, alone = 0;
-    std::uint32_t last_below = 0, last_alone = 0;
+    std::uint32_t last_below = kNone, last_alone = kNone;
     for (const std::uint32_t node : document.scenes[scene]) {
         if (is_below[node]) {
             ++below;
@@ -80,7 +80,7 @@ std::vector<std::uint32_t> roots_of_list(const Document& document, std::uint32_t
         }
     };
     const auto name = [&](std::uint32_t node) {
-        return label("node", node, document.nodes[node].name);
+        return node == kNone ? "" : label("node", node, document.nodes[node].name);
     };
     warn(repeated, "it lists a node twice: the node is placed once");
     warn(below, "it lists " + name(last_below) + " and a parent of it" +

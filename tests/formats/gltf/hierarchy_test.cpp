@@ -226,6 +226,8 @@ TEST(GltfHierarchy, SceneWithoutTrianglesIsAnError) {
     AssetBuilder asset = triangle_asset();
     asset.json["scenes"][0]["nodes"] = Json::array();
     EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("the scene has no triangles"));
+    asset.json["nodes"] = Json::array();
+    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("the scene has no triangles"));
     AssetBuilder lines_only = triangle_asset();
     lines_only.json["meshes"][0]["primitives"][0]["mode"] = 3u;
     EXPECT_THAT(errors_of(import_asset(lines_only)), HasSubstr("the scene has no triangles"));
