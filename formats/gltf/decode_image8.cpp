@@ -20,8 +20,6 @@ namespace opaline::formats::gltf {
 
 namespace {
 
-using Bytes = std::span<const std::byte>;
-
 /// Empty if an image of this size may be allocated for a file of `bytes` bytes.
 std::string size_fault(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
     const std::string size = std::to_string(width) + " x " + std::to_string(height);
@@ -42,7 +40,7 @@ std::string size_fault(std::uint64_t width, std::uint64_t height, std::size_t by
 /// The part of a decoder's state that its C callbacks reach. No destructor may be skipped by a
 /// jump, so everything that owns memory lives in the caller of the function with setjmp.
 struct Source {
-    Bytes bytes;
+    std::span<const std::byte> bytes;
     std::size_t at = 0;
     std::array<char, 256> message{};
     std::jmp_buf escape;
