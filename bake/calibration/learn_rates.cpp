@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <ranges>
 #include <string>
 #include <vector>
 
@@ -17,12 +16,12 @@ void learn_rates(std::span<const StageCost> predicted, const StageLog& ran, Stag
     };
     std::map<std::string, Sum> sums;
     std::vector<StageCost> left(predicted.rbegin(), predicted.rend());
-    for (const StageReport& stage : std::views::reverse(ran)) {
-        const auto found = std::ranges::find(left, stage.name, &StageCost::name);
+    for (auto stage = ran.rbegin(); stage != ran.rend(); ++stage) {
+        const auto found = std::ranges::find(left, stage->name, &StageCost::name);
         if (found != left.end()) {
             Sum& sum = sums[found->kind];
             sum.work += found->work;
-            sum.seconds += stage.cpu_seconds;
+            sum.seconds += stage->cpu_seconds;
             left.erase(found);
         }
     }
