@@ -347,7 +347,7 @@ TEST(Completion, CommandsAndOptionsComeFromHelp) {
                             "echo ${COMPREPLY[@]}"})
             .out;
     };
-    EXPECT_EQ(complete("re"), "relight render reference\n");
+    EXPECT_EQ(complete("re"), "render relight reference\n");
     EXPECT_EQ(complete("compare --max"), "--max-rel\n");
     EXPECT_EQ(complete("info /proc/meminf"), "/proc/meminfo\n");
 }

@@ -31,7 +31,6 @@ AssetBuilder two_squares() {
           {{"metallicFactor", 0}, {"baseColorFactor", {0.8, 0.8, 0.8, 1}}}}},
         {{"name", "Brick"},
          {"extensions", no_specular},
-         {"doubleSided", true},
          {"pbrMetallicRoughness",
           {{"metallicFactor", 0}, {"baseColorFactor", {0.7, 0.2, 0.1, 1}}}}}};
     asset.add_node(0);

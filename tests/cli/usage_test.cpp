@@ -42,7 +42,7 @@ TEST(Usage, HelpExplainsACommandByNameAndVIsTheVersion) {
 
 TEST(Usage, WhatAFirstBakeNeedsStandsFirstInItsHelp) {
     const std::string help = run_opaline({"bake", "--help"}).out;
-    const std::size_t others = help.find("\nWhat is simulated:\n");
+    const std::size_t others = help.find("\nKnobs, which --quality and --error set:\n");
     ASSERT_NE(others, std::string::npos);
     for (const char* option :
          {"--output", "--media", "--quality", "--error", "--metres-per-unit"}) {
