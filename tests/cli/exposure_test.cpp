@@ -41,7 +41,6 @@ double middle_grey(const std::string& path) {
     return sum / count;
 }
 
-// Review 2, fault 28.
 TEST(Exposure, ASunInLuxIsNoWhitePictureAndAllFramesShareOneExposure) {
     SmallScene small;
     const std::string file = bake_sunlit(small);

@@ -81,7 +81,7 @@ TEST(Messages, UsageErrorsSayWhatIsAccepted) {
     }
 }
 
-// Review 2, fault 21: what a newcomer does first, and what to do instead.
+// What a newcomer does first, and what to do instead.
 TEST(Messages, SlipsOfANewcomerSayWhatToDo) {
     SmallScene small;
     const std::string scene = small.scene(), file = small.baked(), none = small.path("none.opal");

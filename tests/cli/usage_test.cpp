@@ -30,7 +30,6 @@ TEST(Usage, EveryCommandExplainsItselfWithAnExample) {
     }
 }
 
-// Review 2, fault 21: neither was known.
 TEST(Usage, HelpExplainsACommandByNameAndVIsTheVersion) {
     EXPECT_EQ(run_opaline({"help"}).out, run_opaline({"--help"}).out);
     EXPECT_EQ(run_opaline({"help", "bake"}).out, run_opaline({"bake", "--help"}).out);

@@ -26,7 +26,7 @@ TEST(AutoExposure, UsualBrightnessIsShownAsItIs) {
     }
 }
 
-// Review 2, fault 28: a sun of 2 W/m2, which exporters write as 1366 lux, made a white picture.
+// A sun of 2 W/m2, which exporters write as 1366 lux, made a white picture.
 TEST(AutoExposure, ASunInLuxIsShownAsBrightAsAStudio) {
     const float sunlit = 1366 / 3.14159f * 0.8f;
     EXPECT_NEAR(sunlit * std::exp2(exposure_of(sunlit)), 0.35f, 0.01f);

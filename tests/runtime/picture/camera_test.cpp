@@ -139,7 +139,7 @@ TEST(FrameAsset, HorizonIsInThePictureOfUprightThingsAndFlatOnesAreSeenFromAbove
     EXPECT_GT(elevation_of({2, 0.05f, 1.5f}), 20);
 }
 
-// Review 2, fault 13: balls on a floor of 2.5 times their width took a third of the picture's.
+// Balls on a floor of 2.5 times their width took a third of the picture's.
 TEST(FrameAsset, LevelGroundIsLeftOutWholeOrInTilesButABoardOnItIsNot) {
     for (const int tiles : {1, 3}) {
         Asset asset = test::make_asset(8, 8);

@@ -39,7 +39,7 @@ TEST(ToneMap, IsContinuousAtItsTwoBreaks) {
     }
 }
 
-// Review 2, fault 13: flames were salmon, their blue nearly as bright as their green.
+// Flames were salmon, their blue nearly as bright as their green.
 TEST(ToneMap, BrightFireGoesFromOrangeOverYellowToWhite) {
     const Rgb fire{1.0f, 0.3f, 0.02f};  // some 1900 K
     float green = 0;
