@@ -109,8 +109,14 @@ TEST(Bake, TermsOfTheReportAreTheMostThatAnyPrimitiveHas) {
 TEST(Bake, CheckModelComparesWithTheReferenceAndTellsReportFileAndUser) {
     SmallScene small;
     const std::string out = small.path("a.opal"), report = small.path("r.json");
-    const Arguments plain = {"bake", small.scene(), "-o",    out,         "--report",
-                             report, "--quality",   "draft", "--effects", "direct"};
+    AssetBuilder asset = two_squares();
+    asset.json["materials"][1]["doubleSided"] = true;
+    write_file(small.path("two-sided.glb"), asset.glb());
+    const Arguments plain = {"bake",      small.path("two-sided.glb"),
+                             "-o",        out,
+                             "--report",  report,
+                             "--quality", "draft",
+                             "--effects", "direct"};
     Arguments checked = plain;
     checked.push_back("--check-model");
     ASSERT_EQ(run_opaline(plain).exit_code, 0);
@@ -122,9 +128,9 @@ TEST(Bake, CheckModelComparesWithTheReferenceAndTellsReportFileAndUser) {
     EXPECT_GE(error.at("rms_relative").get<double>(), error.at("ci95").at(0).get<double>());
     EXPECT_LE(error.at("rms_relative").get<double>(), error.at("ci95").at(1).get<double>());
     EXPECT_LT(std::abs(error.at("bias").get<double>()), 1);
-    // What the squares reflect onto each other: little, the upper one is brick.
-    EXPECT_GT(error.at("missing").get<double>(), 1e-4);
-    EXPECT_LT(error.at("missing").get<double>(), 0.02);
+    // The light that the lower square and the back of the upper one reflect onto each other.
+    EXPECT_GT(error.at("missing").get<double>(), 0.02);
+    EXPECT_LT(error.at("missing").get<double>(), 0.2);
     EXPECT_GT(error.at("receivers_checked"), 0);
     EXPECT_GT(error.at("samples"), 0);
     EXPECT_GT(error.at("seconds").get<double>(), 0);
