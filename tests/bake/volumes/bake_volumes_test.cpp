@@ -36,11 +36,6 @@ Knobs knobs_by(VolumeMethod method) {
     return knobs;
 }
 
-class BakeVolumesBy : public testing::TestWithParam<VolumeMethod> {};
-
-INSTANTIATE_TEST_SUITE_P(Methods, BakeVolumesBy,
-                         testing::Values(VolumeMethod::walks, VolumeMethod::path_integration));
-
 // Of each node, the integral of the first row of light scattered more than once.
 std::vector<double> scattered_often(const formats::Volumes& volumes) {
     const formats::VolumeRecord& record = volumes.records.at(0);
