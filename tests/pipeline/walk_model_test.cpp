@@ -111,59 +111,6 @@ TEST(WalkModel, ThinSheetSeenAlongItsNormalIsAsBrightAsPathTracedWithFourRowsAnd
     EXPECT_NEAR(model_errors(sheet, four).bias, 0, 0.05);
 }
 
-// A cube without absorption shows 1 everywhere under even light. At index 1, where nothing reflects
-// views inside, half of those from an edge leave through the other face.
-TEST(WalkModel, CubeOfAJellyIsAsBrightAlongItsEdgesAsOnItsFaces) {
-    const auto furnace = [](float sigma_s, double model, double within) {
-        BakeOptions options = tests::small_bake();
-        options.set(kMultipleModel, model);
-        options.set(kWalks, 30000);
-        options.set(kSites, 1000);
-        const tests::Scene cube = tests::make_translucent_scene(
-            {tests::make_cube(4, false)}, tests::make_grey_medium(sigma_s, 0, 1));
-        const BakeResult baked = tests::bake_scene(cube, options);
-        EXPECT_FALSE(entry_of(baked, "transmission").on);
-        for (const formats::Rgb& c : tests::relight(baked.asset.view(), "white")) {
-            EXPECT_NEAR(c.g, 1, within);
-        }
-    };
-    furnace(15, kWalked, 0.02);
-    furnace(100, kDipole, 0.15);  // edges had 1.3, corners 1.4
-}
-
-// Seen along its normal a sheet is darker than aslant, and rows that are the same for all views do
-// not know: the self-check looks from several sides.
-TEST(WalkModel, SelfCheckStatesWhatOneRowForAllViewsErrsBy) {
-    const tests::Scene sheet = tests::make_translucent_scene(tests::make_sheet(0.3f, 6, 6),
-                                                             tests::make_grey_medium(3, 0.3f, 1));
-    const auto stated = [&](double rows) {
-        BakeOptions options = bake_by(kWalked, 100000);
-        options.effects = {"multiple", "single"};
-        options.set(kViewTerms, rows);
-        return tests::bake_scene(sheet, options).error.at_receivers.rms_relative;
-    };
-    const double one = stated(1);
-    EXPECT_GT(one, 0.15);
-    EXPECT_LT(stated(9), 0.7 * one);
-}
-
-// Light from one side makes views of a slab of ten mean free paths differ by more than its
-// thickness says.
-TEST(WalkModel, ErrorOfOneRowForAllViewsIsMeasuredBeforeTheBake) {
-    formats::Medium medium = tests::make_grey_medium(10, 0, 1.3f);
-    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-    medium.phase.g = 0.5f;
-    const tests::Scene slab = tests::make_translucent_scene({tests::make_plate(1, 4, 4)}, medium);
-    BakeOptions options = bake_by(kWalked, 20000);
-    options.effects = {"multiple", "single"};
-    const PlanEntry planned =
-        *find_entry(plan_bake(all_effects(), slab, inspect_scene(slab), *resolve_knobs(options)),
-                    "multiple.view", 0);
-    const PlanEntry baked = entry_of(tests::bake_scene(slab, options), "multiple.view");
-    EXPECT_GE(baked.model_error, planned.model_error);
-    EXPECT_THAT(baked.reason, testing::HasSubstr("measured at 16 vertices"));
-}
-
 // The file itself, toward eyes aslant: a slab of 6 mean free paths that absorbs half of what
 // arrives, against doubling.
 TEST(WalkModel, FileOfNineRowsShowsAnAbsorbingSlabTowardEveryEyeBetterThanOneOfFour) {
