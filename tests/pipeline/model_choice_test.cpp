@@ -219,7 +219,7 @@ TEST(ModelChoice, LightScatteredOnceIsBackWhereTheDipoleWasMeasuredToServe) {
     medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
     medium.phase.g = 0.5f;
     tests::Primitive open = tests::make_sphere(2);
-    open.index.resize(open.index.size() - 3);
+    open.index.resize(open.index.size() / 12 * 9);  // a hole too large to know the thickness
     const tests::Scene ball = tests::make_translucent_scene({open}, medium);
     const auto bake_of = [&](double model) {
         BakeOptions options = tests::only({"multiple", "single"});
@@ -252,7 +252,7 @@ TEST(ModelChoice, RequestsThatWalksOverruleAreNamed) {
         }
         return all;
     };
-    EXPECT_THAT(warnings_of(dense, options), HasSubstr("not used here: --view-terms"));
+    EXPECT_THAT(warnings_of(dense, options), HasSubstr("--view-terms"));
     const tests::Scene thin = tests::make_translucent_scene({tests::make_sphere(2)},
                                                             tests::make_grey_medium(2.97f, 0.03f));
     EXPECT_THAT(warnings_of(thin, options), Not(HasSubstr("--view-terms")));
