@@ -86,7 +86,7 @@ bake::BakeOptions by(bake::MultipleModel model) {
     options.coefficients = 32;
     options.set(bake::kMultipleModel, static_cast<double>(model));
     options.set(bake::kWalks, 2000);
-    options.set(bake::kSites, 300);
+    options.set(bake::kSites, 500);
     options.set(bake::kSamples, 500);
     return options;
 }
