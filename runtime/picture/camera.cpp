@@ -227,7 +227,7 @@ std::vector<std::size_t> object_parts(const AssetView& asset) {
     if (chosen.size() + asset.volumes.records.size() < 2 || chosen.empty()) return chosen;
     constexpr double kShrinksIt = 1.3, kDwarfs = 3;
     const double radius = bound_parts(asset, chosen).radius;
-    const std::vector<std::size_t> above = parts_above_ground(asset, chosen);
+    std::vector<std::size_t> above = parts_above_ground(asset, chosen);
     if (radius >= kShrinksIt * bound_parts(asset, above).radius) return above;
     const PrimitiveRecord& primitive = asset.primitives[largest];
     if (!is_flat(asset, primitive, box_of(positions_of(asset, primitive)))) return chosen;
