@@ -10,7 +10,7 @@ seconds_per_file=300
 
 base=${1:-$(git merge-base HEAD origin/main 2>/dev/null || true)}
 if [ -z "$base" ] || [ "$base" = "$(git rev-parse HEAD)" ]; then
-    base=$(git rev-list --max-count=21 HEAD | tail -n 1)
+    base=$(git rev-list --first-parent --max-count=21 HEAD | tail -n 1)
 fi
 
 # The commands of the preset "asan", one for each source, without precompiled headers.

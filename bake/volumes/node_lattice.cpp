@@ -60,7 +60,7 @@ std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spa
                 for (int k = first(z); k <= last(z); ++k) {
                     for (int j = first(y); j <= last(y); ++j) {
                         for (int i = first(x); i <= last(x); ++i) {
-                            has[static_cast<std::size_t>((k * cells + j) * cells + i)] = true;
+                            has[static_cast<std::uint32_t>((k * cells + j) * cells + i)] = true;
                         }
                     }
                 }
@@ -97,7 +97,7 @@ class NodeNumbers {
     // in one of the bricks.
     std::uint32_t& at(glm::ivec3 voxel) {
         const glm::ivec3 brick = Grid::brick_of(voxel), b = brick - first_;
-        const auto size = static_cast<std::size_t>(cells_ * cells_ * cells_);
+        const auto size = static_cast<std::uint32_t>(cells_ * cells_ * cells_);
         std::uint32_t& block = block_[static_cast<std::size_t>(b.z * extent_.y + b.y) *
                                           static_cast<std::size_t>(extent_.x) +
                                       static_cast<std::size_t>(b.x)];
