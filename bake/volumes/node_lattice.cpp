@@ -106,7 +106,7 @@ class NodeNumbers {
             number_.resize(number_.size() + size, formats::kNoNode);
         }
         const glm::ivec3 c = (voxel - brick * Grid::kSide) / spacing_;
-        return number_[block * size +
+        return number_[std::size_t{block} * size +
                        static_cast<std::size_t>((c.z * cells_ + c.y) * cells_ + c.x)];
     }
 
