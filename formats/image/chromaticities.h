@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <glm/glm.hpp>
 #include <optional>
 #include <vector>
 
@@ -11,8 +12,8 @@ namespace opaline::formats {
 /// Positions in the CIE 1931 (x, y) diagram: red, green, blue, white.
 using Chromaticities = std::array<float, 8>;
 
-/// Row-major: linear RGB to linear RGB.
-using ColorMatrix = std::array<double, 9>;
+/// Linear RGB to linear RGB.
+using ColorMatrix = glm::dmat3;
 
 /// From linear RGB of these primaries to linear Rec. 709. The white of one becomes the white of the
 /// other, by Bradford's adaptation (Lindbloom; ICC.1:2010, annex E). The identity if they are those

@@ -10,7 +10,6 @@
 #include <string_view>
 
 #include "formats/image/image_kind.h"
-#include "formats/opal/file_bytes.h"
 
 namespace opaline::formats {
 namespace {
@@ -225,14 +224,6 @@ Result<HdrImage> decode_hdr(std::span<const std::byte> bytes, const std::string&
         return make_error(ErrorKind::resource, name, "", "does not fit in memory",
                           "use a smaller image");
     }
-}
-
-Result<Image> read_hdr(const std::filesystem::path& path) {
-    Result<FileBytes> file = FileBytes::open(path);
-    if (!file) return std::move(file).error();
-    Result<HdrImage> decoded = decode_hdr(file->bytes(), path.string());
-    if (!decoded) return std::move(decoded).error();
-    return std::move(decoded->image);
 }
 
 }  // namespace opaline::formats

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,8 +21,5 @@ struct HdrImage {
 /// as most programs read it; values are divided by the EXPOSURE lines of the header.
 /// `name` is used in messages only. Untrusted bytes are safe. Errors: bad_input.
 Result<HdrImage> decode_hdr(std::span<const std::byte> bytes, const std::string& name);
-
-/// `decode_hdr` of a file, without its warnings.
-Result<Image> read_hdr(const std::filesystem::path& path);
 
 }  // namespace opaline::formats

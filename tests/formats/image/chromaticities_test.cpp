@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 
 namespace opaline::formats {
@@ -12,7 +13,7 @@ namespace {
 TEST(Chromaticities, MatricesAreThePublishedOnes) {
     struct Row {
         Chromaticities from;
-        ColorMatrix expected;
+        std::array<double, 9> expected;  // row after row
     };
     const Row rows[]{
         {{0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f},
@@ -27,7 +28,8 @@ TEST(Chromaticities, MatricesAreThePublishedOnes) {
         const auto matrix = to_rec709(row.from);
         ASSERT_TRUE(matrix);
         for (std::size_t i = 0; i < 9; ++i) {
-            EXPECT_NEAR((*matrix)[i], row.expected[i], 2e-4) << row.from[0] << " " << i;
+            EXPECT_NEAR((*matrix)[int(i % 3)][int(i / 3)], row.expected[i], 2e-4)
+                << row.from[0] << " " << i;
         }
     }
 }

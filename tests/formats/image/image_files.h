@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "formats/image/chromaticities.h"
 #include "formats/image/exr.h"
@@ -41,6 +43,17 @@ std::span<const std::byte> as_bytes(const std::string& text);
 
 /// The first diagnostic as one line.
 std::string message(const Error& error);
+
+/// What was read; throws the message of what was not.
+template <class T>
+T must(Result<T> read) {
+    return read ? std::move(*read) : throw std::runtime_error(message(read.error()));
+}
+/// "accepted", or the message.
+template <class T>
+std::string refusal(const Result<T>& read) {
+    return read ? "accepted" : message(read.error());
+}
 
 /// An image in which every value differs.
 Image ramp(std::uint32_t width, std::uint32_t height);

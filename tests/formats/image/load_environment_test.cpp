@@ -58,17 +58,20 @@ float worst(const LoadedEnvironment& loaded) {
 }
 
 LoadedEnvironment load(const std::string& bytes) {
-    Result<LoadedEnvironment> loaded = decode_environment(as_bytes(bytes), "env");
-    EXPECT_TRUE(loaded) << message(loaded.error());
-    return loaded ? std::move(*loaded) : LoadedEnvironment{};
+    return must(decode_environment(as_bytes(bytes), "env"));
 }
 
-TEST(LoadEnvironment, LatLongWithoutAttributeHasPlusXInTheCentre) {
-    const Image image = filled(256, 128, [](std::uint32_t x, std::uint32_t y) -> Vec3 {
+// 256 x 128, with +X in the centre.
+Image lat_long() {
+    return filled(256, 128, [](std::uint32_t x, std::uint32_t y) -> Vec3 {
         const float phi = kPi * ((static_cast<float>(x) + 0.5f) / 128.0f - 1.0f);
         const float theta = kPi * (static_cast<float>(y) + 0.5f) / 128.0f;
         return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
     });
+}
+
+TEST(LoadEnvironment, LatLongWithoutAttributeHasPlusXInTheCentre) {
+    const Image image = lat_long();
     const LoadedEnvironment loaded = load(make_exr(image));
     EXPECT_TRUE(loaded.warnings.empty());
     EXPECT_EQ(loaded.environment.pixel, image.pixel);
@@ -131,11 +134,7 @@ TEST(LoadEnvironment, CubeStripsAreOpenGlFacesInEitherDirection) {
 }
 
 TEST(LoadEnvironment, WrittenEnvironmentsReadBackInEveryConvention) {
-    const Image image = filled(256, 128, [](std::uint32_t x, std::uint32_t y) -> Vec3 {
-        const float phi = kPi * ((static_cast<float>(x) + 0.5f) / 128.0f - 1.0f);
-        const float theta = kPi * (static_cast<float>(y) + 0.5f) / 128.0f;
-        return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
-    });
+    const Image image = lat_long();
     Environment environment;
     environment.width = 256;
     environment.height = 128;
@@ -194,9 +193,7 @@ TEST(LoadEnvironment, OddShapesAreTakenWithAWarningAndWrongAttributesRefused) {
     EXPECT_EQ(load(make_exr(ramp(10, 10))).warnings.size(), 1u);
     EXPECT_TRUE(load(make_exr(ramp(10, 5), {.envmap = Envmap::lat_long})).warnings.empty());
     const auto refused = [](const Image& image, Envmap envmap) {
-        const std::string bytes = make_exr(image, {.envmap = envmap});
-        const Result<LoadedEnvironment> loaded = decode_environment(as_bytes(bytes), "env");
-        return loaded ? std::string("accepted") : message(loaded.error());
+        return refusal(decode_environment(as_bytes(make_exr(image, {.envmap = envmap})), "env"));
     };
     EXPECT_THAT(refused(ramp(10, 5), Envmap::cube), HasSubstr("expected n x 6n"));
     EXPECT_THAT(refused(ramp(1, 5), Envmap::lat_long), HasSubstr("at least 2 x 2"));
@@ -204,8 +201,7 @@ TEST(LoadEnvironment, OddShapesAreTakenWithAWarningAndWrongAttributesRefused) {
 
 TEST(LoadEnvironment, OtherFilesAreRefusedByContent) {
     const auto refused = [](const std::string& bytes) {
-        const Result<LoadedEnvironment> loaded = decode_environment(as_bytes(bytes), "env.exr");
-        return loaded ? std::string("accepted") : message(loaded.error());
+        return refusal(decode_environment(as_bytes(bytes), "env.exr"));
     };
     EXPECT_THAT(refused(""), HasSubstr("is empty"));
     EXPECT_THAT(refused("hello"), HasSubstr("neither an OpenEXR nor a Radiance HDR"));
@@ -217,18 +213,17 @@ TEST(LoadEnvironment, AssetEnvironmentsLoadWithNothingWorseThanNegativeTexels) {
     OPALINE_ASSET(folder, "env");
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-        const Result<LoadedEnvironment> loaded = load_environment(entry.path());
-        ASSERT_TRUE(loaded) << message(loaded.error());
-        for (const Diagnostic& warning : loaded->warnings) {
+        const LoadedEnvironment loaded = must(load_environment(entry.path()));
+        for (const Diagnostic& warning : loaded.warnings) {
             EXPECT_THAT(warning.fault, HasSubstr("values are negative, taken as 0"))
                 << entry.path();
         }
-        EXPECT_EQ(loaded->environment.width, 2 * loaded->environment.height);
+        EXPECT_EQ(loaded.environment.width, 2 * loaded.environment.height);
         double mean = 0;
-        for (const Rgb& c : loaded->environment.pixel) {
+        for (const Rgb& c : loaded.environment.pixel) {
             mean += static_cast<double>(luminance(c));
         }
-        mean /= static_cast<double>(loaded->environment.pixel.size());
+        mean /= static_cast<double>(loaded.environment.pixel.size());
         EXPECT_GT(mean, 1e-3) << entry.path();
         EXPECT_LT(mean, 1e3) << entry.path();
         ++count;
