@@ -6,14 +6,13 @@
 #include <numbers>
 #include <optional>
 #include <string>
-#include <utility>
 
 #include "formats/opal/used_part.h"
 
 namespace opaline::formats {
 namespace {
 
-constexpr const char* kCloudsSection = "section CLOU";
+constexpr const char *kCloudsSection = "section CLOU", *kLayer = "section CLOU, layer";
 
 // False for NaN.
 bool lies_within(float x, float low, float high) {
@@ -210,18 +209,6 @@ std::string find_layer_value_fault(const CloudsView& clouds, const LayerRecord& 
     return {};
 }
 
-// The first fault that `find` sees in a layer.
-template <class Find>
-Fault find_first(const CloudsView& clouds, Find find) {
-    for (std::size_t i = 0; i < clouds.records.size(); ++i) {
-        if (std::string fault = find(clouds.records[i]); !fault.empty()) {
-            return {std::string(kCloudsSection) + ", layer " + number_in_fault(i),
-                    std::move(fault)};
-        }
-    }
-    return {};
-}
-
 }  // namespace
 
 Fault find_clouds_fault(const CloudsView& clouds) {
@@ -230,18 +217,19 @@ Fault find_clouds_fault(const CloudsView& clouds) {
                                     " layers; this version of " + "Opaline knows one at most"};
     }
     UsedLayerParts used;
-    return find_first(clouds, [&](const LayerRecord& layer) {
-        std::string fault = find_place_fault(layer);
-        if (fault.empty()) fault = find_frame_fault(layer);
-        if (fault.empty()) fault = find_band_fault(layer);
-        if (fault.empty()) fault = find_count_fault(layer);
-        return fault.empty() ? find_part_fault(clouds, layer, used) : fault;
+    return find_fault_in(kLayer, clouds.records.size(), [&](std::size_t i) {
+        const LayerRecord& layer = clouds.records[i];
+        return find_first_fault(
+            [&] { return find_place_fault(layer); }, [&] { return find_frame_fault(layer); },
+            [&] { return find_band_fault(layer); }, [&] { return find_count_fault(layer); },
+            [&] { return find_part_fault(clouds, layer, used); });
     });
 }
 
 Fault find_cloud_value_fault(const CloudsView& clouds) {
-    return find_first(
-        clouds, [&](const LayerRecord& layer) { return find_layer_value_fault(clouds, layer); });
+    return find_fault_in(kLayer, clouds.records.size(), [&](std::size_t i) {
+        return find_layer_value_fault(clouds, clouds.records[i]);
+    });
 }
 
 }  // namespace opaline::formats

@@ -1,11 +1,11 @@
 #include "formats/opal/check_emitters.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 
+#include "formats/opal/check_opal.h"
 #include "formats/opal/half.h"
 #include "formats/opal/used_part.h"
 
@@ -64,25 +64,7 @@ std::string find_own_fault(const AssetView& asset, std::size_t i) {
     if (!is_bounded(own.radiance.r) || !is_bounded(own.radiance.g) || !is_bounded(own.radiance.b)) {
         return "its radiance is below zero or not finite";
     }
-    if (own.image != kNoImage && (own.image >= asset.images.size() || asset.texcoord.empty())) {
-        return "it uses an image or texture coordinates that are not there";
-    }
-    if (!is_known(own.wrap_u) || !is_known(own.wrap_v)) {
-        return "unknown texture wrap mode";
-    }
-    return {};
-}
-
-// The first fault that `find` sees among `count` things called `what`.
-template <class Find>
-Fault find_first_of(const char* what, std::size_t count, Find find) {
-    for (std::size_t i = 0; i < count; ++i) {
-        if (std::string fault = find(i); !fault.empty()) {
-            return {std::string(kEmittersSection) + ", " + what + " " + number_in_fault(i),
-                    std::move(fault)};
-        }
-    }
-    return {};
+    return find_image_fault(asset, own.image, own.wrap_u, own.wrap_v);
 }
 
 }  // namespace
@@ -94,19 +76,21 @@ Fault find_emitters_fault(const AssetView& asset) {
                                       " emitters; expected " + number_in_fault(kMaxEmitters) +
                                       " at most"};
     }
-    Fault fault = find_first_of("emitter", emitters.name_end.size(), [&](std::size_t i) {
-        return find_name_fault(emitters, static_cast<std::uint32_t>(i));
-    });
     UsedPart used;
-    if (fault.what.empty()) {
-        fault = find_first_of("block", emitters.block.size(),
-                              [&](std::size_t i) { return find_block_fault(asset, i, used); });
-    }
-    if (fault.what.empty()) {
-        fault = find_first_of("own light", emitters.own.size(),
-                              [&](std::size_t i) { return find_own_fault(asset, i); });
-    }
-    return fault;
+    return find_first_fault(
+        [&] {
+            return find_fault_in("section EMIT, emitter", emitters.size(), [&](std::size_t i) {
+                return find_name_fault(emitters, static_cast<std::uint32_t>(i));
+            });
+        },
+        [&] {
+            return find_fault_in("section EMIT, block", emitters.block.size(),
+                                 [&](std::size_t i) { return find_block_fault(asset, i, used); });
+        },
+        [&] {
+            return find_fault_in("section EMIT, own light", emitters.own.size(),
+                                 [&](std::size_t i) { return find_own_fault(asset, i); });
+        });
 }
 
 Fault find_emitter_value_fault(const EmittersView& emitters) {

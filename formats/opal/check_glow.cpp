@@ -12,8 +12,6 @@
 namespace opaline::formats {
 namespace {
 
-constexpr const char* kGlowSectionName = "section GLOW";
-
 bool is_scale(float x) {
     return x >= 0 && x <= std::numeric_limits<float>::max() / kLargestHalf;
 }
@@ -64,20 +62,15 @@ std::string find_record_fault(const AssetView& asset, std::size_t i, UsedPart& b
 
 Fault find_glow_fault(const AssetView& asset) {
     UsedPart bricks, values;
-    for (std::size_t i = 0; i < asset.volumes.glow.record.size(); ++i) {
-        if (std::string fault = find_record_fault(asset, i, bricks, values); !fault.empty()) {
-            return {std::string(kGlowSectionName) + ", record " + number_in_fault(i),
-                    std::move(fault)};
-        }
-    }
-    return {};
+    return find_fault_in(
+        "section GLOW, record", asset.volumes.glow.record.size(),
+        [&](std::size_t i) { return find_record_fault(asset, i, bricks, values); });
 }
 
 Fault find_glow_value_fault(const GlowView& glow) {
     const auto bad = std::ranges::find_if_not(glow.value, is_half_finite);
     if (bad == glow.value.end()) return {};
-    return {std::string(kGlowSectionName) + ", value " + number_in_fault(bad - glow.value.begin()),
-            "it is not finite"};
+    return {"section GLOW, value " + number_in_fault(bad - glow.value.begin()), "it is not finite"};
 }
 
 }  // namespace opaline::formats

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <utility>
+
+#include "formats/opal/check_opal.h"
 
 namespace opaline::formats {
 namespace {
@@ -35,13 +36,7 @@ std::string find_hole_fault(const AssetView& asset, std::size_t i) {
         return "its alpha is not in 0 ... 1, its cutoff is below zero or not finite, or what "
                "passes it as glass is not in 0 ... 1 or of an index below 1";
     }
-    if (hole.image != kNoImage && (hole.image >= asset.images.size() || asset.texcoord.empty())) {
-        return "it uses an image or texture coordinates that are not there";
-    }
-    if (!is_known(hole.wrap_u) || !is_known(hole.wrap_v)) {
-        return "unknown texture wrap mode";
-    }
-    return {};
+    return find_image_fault(asset, hole.image, hole.wrap_u, hole.wrap_v);
 }
 
 }  // namespace
@@ -53,12 +48,8 @@ Fault find_holes_fault(const AssetView& asset) {
                                     " vertices; expected none, or " +
                                     number_in_fault(asset.position.size())};
     }
-    for (std::size_t i = 0; i < asset.holes.record.size(); ++i) {
-        if (std::string fault = find_hole_fault(asset, i); !fault.empty()) {
-            return {"section HOLE, record " + number_in_fault(i), std::move(fault)};
-        }
-    }
-    return {};
+    return find_fault_in("section HOLE, record", asset.holes.record.size(),
+                         [&](std::size_t i) { return find_hole_fault(asset, i); });
 }
 
 Fault find_hole_value_fault(const HolesView& holes) {

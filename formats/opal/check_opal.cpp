@@ -31,23 +31,19 @@ std::string find_shading_fault(const PrimitiveRecord& p) {
     const auto number = [](auto value) { return std::to_string(value); };
     switch (p.shading) {
         case Shading::diffuse:
-            if (p.terms != 1 || (p.bands != 1 && p.bands != 3) || p.eta != 0.0f) {
-                return "diffuse shading with " + number(p.terms) + " terms, " + number(p.bands) +
-                       " bands and index of refraction " + number(p.eta) +
-                       "; expected 1 term, 1 or 3 bands and index 0";
+        case Shading::sheet: {
+            const std::string kind =
+                p.shading == Shading::sheet ? "thin-walled shading" : "diffuse shading";
+            const std::uint32_t terms = p.shading == Shading::sheet ? 2 : 1;
+            if (p.terms != terms || (p.bands != 1 && p.bands != 3) || p.eta != 0.0f) {
+                return kind + " with " + number(p.terms) + " terms, " + number(p.bands) +
+                       " bands and index of refraction " + number(p.eta) + "; expected " +
+                       number(terms) + (terms == 1 ? " term" : " terms") +
+                       ", 1 or 3 bands and index 0";
             }
-            return p.is_separate() || p.is_single_only()
-                       ? "diffuse shading with separate scattering"
-                       : std::string();
-        case Shading::sheet:
-            if (p.terms != 2 || (p.bands != 1 && p.bands != 3) || p.eta != 0.0f) {
-                return "thin-walled shading with " + number(p.terms) + " terms, " +
-                       number(p.bands) + " bands and index of refraction " + number(p.eta) +
-                       "; expected 2 terms, 1 or 3 bands and index 0";
-            }
-            return p.is_separate() || p.is_single_only()
-                       ? "thin-walled shading with separate scattering"
-                       : std::string();
+            return p.is_separate() || p.is_single_only() ? kind + " with separate scattering"
+                                                         : std::string();
+        }
         case Shading::translucent:
             if (p.is_separate() && p.is_single_only()) {
                 return "rows of single scattering alone with multiple scattering in a row of its "
@@ -87,14 +83,7 @@ Fault find_primitive_fault(const AssetView& asset, std::size_t i) {
                     [&p](std::uint32_t v) { return v >= p.vertex_count; })) {
         return {primitive_name(i), "a triangle refers to a vertex it does not have"};
     }
-    if (p.base_color_image != kNoImage &&
-        (p.base_color_image >= asset.images.size() || asset.texcoord.empty())) {
-        return {primitive_name(i), "it uses an image or texture coordinates that are not there"};
-    }
-    if (!is_known(p.wrap_u) || !is_known(p.wrap_v)) {
-        return {primitive_name(i), "unknown texture wrap mode"};
-    }
-    return {};
+    return {primitive_name(i), find_image_fault(asset, p.base_color_image, p.wrap_u, p.wrap_v)};
 }
 
 // Roughness decides what a renderer allocates: part of the structure.
@@ -109,16 +98,16 @@ Fault find_specular_fault(const AssetView& asset) {
                                     " vertices, not " + std::to_string(asset.primitives.size()) +
                                     " and " + std::to_string(asset.position.size())};
     }
-    for (std::size_t i = 0; i < asset.roughness.size(); ++i) {
+    return find_fault_in("section SPEC, primitive", asset.roughness.size(), [&](std::size_t i) {
         const float roughness = asset.roughness[i];
-        if (roughness != kNotGlossy && (asset.primitives[i].shading != Shading::translucent ||
-                                        !(roughness >= 0.0f && roughness <= 1.0f))) {
-            return {"section SPEC, primitive " + std::to_string(i),
-                    "roughness " + std::to_string(roughness) +
-                        "; expected 0 ... 1, or -1 for none, as diffuse primitives must have"};
-        }
-    }
-    return {};
+        const bool is_possible =
+            roughness == kNotGlossy || (asset.primitives[i].shading == Shading::translucent &&
+                                        roughness >= 0.0f && roughness <= 1.0f);
+        return is_possible ? std::string()
+                           : "roughness " + std::to_string(roughness) +
+                                 "; expected 0 ... 1, or -1 for none, as diffuse primitives must "
+                                 "have";
+    });
 }
 
 // Records decide which images are sampled: part of the structure.
@@ -133,13 +122,7 @@ std::string find_gloss_record_fault(const AssetView& asset, std::size_t i) {
         !share(g.f0.g) || !share(g.f0.b)) {
         return "a roughness, metallic factor or reflectance is not in 0 ... 1";
     }
-    if (g.image != kNoImage && (g.image >= asset.images.size() || asset.texcoord.empty())) {
-        return "it uses an image or texture coordinates that are not there";
-    }
-    if (!is_known(g.wrap_u) || !is_known(g.wrap_v)) {
-        return "unknown texture wrap mode";
-    }
-    return {};
+    return find_image_fault(asset, g.image, g.wrap_u, g.wrap_v);
 }
 
 Fault find_gloss_fault(const AssetView& asset) {
@@ -151,12 +134,8 @@ Fault find_gloss_fault(const AssetView& asset) {
                                     std::to_string(asset.primitives.size()) +
                                     " and a section SPEC with the openness of every vertex"};
     }
-    for (std::size_t i = 0; i < asset.gloss.size(); ++i) {
-        if (std::string fault = find_gloss_record_fault(asset, i); !fault.empty()) {
-            return {"section GLOS, primitive " + std::to_string(i), std::move(fault)};
-        }
-    }
-    return {};
+    return find_fault_in("section GLOS, primitive", asset.gloss.size(),
+                         [&](std::size_t i) { return find_gloss_record_fault(asset, i); });
 }
 
 bool finite(Vec3 v) {
@@ -164,6 +143,14 @@ bool finite(Vec3 v) {
 }
 
 }  // namespace
+
+std::string find_image_fault(const AssetView& asset, std::uint32_t image, Wrap wrap_u,
+                             Wrap wrap_v) {
+    if (image != kNoImage && (image >= asset.images.size() || asset.texcoord.empty())) {
+        return "it uses an image or texture coordinates that are not there";
+    }
+    return is_known(wrap_u) && is_known(wrap_v) ? "" : "unknown texture wrap mode";
+}
 
 Fault find_structure_fault(const AssetView& asset) {
     if (!is_valid_cubemap_size(asset.cubemap_size)) {
@@ -173,36 +160,20 @@ Fault find_structure_fault(const AssetView& asset) {
     if (!asset.texcoord.empty() && asset.texcoord.size() != asset.position.size()) {
         return {"section MESH", "texture coordinates and positions differ in number"};
     }
-    if (Fault fault = find_rows_fault(asset.transport, "section TRAN"); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_specular_fault(asset); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_gloss_fault(asset); !fault.what.empty()) {
-        return fault;
-    }
-    for (std::size_t i = 0; i < asset.primitives.size(); ++i) {
-        if (Fault fault = find_primitive_fault(asset, i); !fault.what.empty()) {
+    return find_first_fault(
+        [&] { return find_rows_fault(asset.transport, "section TRAN"); },
+        [&] { return find_specular_fault(asset); }, [&] { return find_gloss_fault(asset); },
+        [&] {
+            Fault fault;
+            for (std::size_t i = 0; is_sound(fault) && i < asset.primitives.size(); ++i) {
+                fault = find_primitive_fault(asset, i);
+            }
             return fault;
-        }
-    }
-    if (Fault fault = find_holes_fault(asset); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_normal_maps_fault(asset); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_volumes_fault(asset.volumes); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_clouds_fault(asset.clouds); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_emitters_fault(asset); !fault.what.empty()) {
-        return fault;
-    }
-    return find_glow_fault(asset);
+        },
+        [&] { return find_holes_fault(asset); }, [&] { return find_normal_maps_fault(asset); },
+        [&] { return find_volumes_fault(asset.volumes); },
+        [&] { return find_clouds_fault(asset.clouds); }, [&] { return find_emitters_fault(asset); },
+        [&] { return find_glow_fault(asset); });
 }
 
 Fault find_value_fault(const AssetView& asset) {
@@ -225,22 +196,12 @@ Fault find_value_fault(const AssetView& asset) {
             return {"section MESH", "a texture coordinate is not finite"};
         }
     }
-    if (Fault fault = find_row_value_fault(asset.transport, "section TRAN"); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_hole_value_fault(asset.holes); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_volume_value_fault(asset.volumes); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_cloud_value_fault(asset.clouds); !fault.what.empty()) {
-        return fault;
-    }
-    if (Fault fault = find_emitter_value_fault(asset.emitters); !fault.what.empty()) {
-        return fault;
-    }
-    return find_glow_value_fault(asset.volumes.glow);
+    return find_first_fault([&] { return find_row_value_fault(asset.transport, "section TRAN"); },
+                            [&] { return find_hole_value_fault(asset.holes); },
+                            [&] { return find_volume_value_fault(asset.volumes); },
+                            [&] { return find_cloud_value_fault(asset.clouds); },
+                            [&] { return find_emitter_value_fault(asset.emitters); },
+                            [&] { return find_glow_value_fault(asset.volumes.glow); });
 }
 
 }  // namespace opaline::formats

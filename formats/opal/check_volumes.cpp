@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 
 #include "formats/opal/check_rows.h"
 #include "formats/opal/spherical_harmonics.h"
@@ -13,7 +12,7 @@
 namespace opaline::formats {
 namespace {
 
-constexpr const char* kVolumesSection = "section VOLU";
+constexpr const char *kVolumesSection = "section VOLU", *kVolume = "section VOLU, volume";
 
 // Parts of the arrays that volumes have used so far.
 struct UsedParts {
@@ -196,45 +195,37 @@ std::string find_brick_value_fault(const VolumesView& volumes, const VolumeRecor
     return {};
 }
 
-// The first fault that `find` sees in a volume.
-template <class Find>
-Fault find_first(const VolumesView& volumes, Find find) {
-    for (std::size_t i = 0; i < volumes.records.size(); ++i) {
-        if (std::string fault = find(volumes.records[i]); !fault.empty()) {
-            return {std::string(kVolumesSection) + ", volume " + number_in_fault(i),
-                    std::move(fault)};
-        }
-    }
-    return {};
-}
-
 }  // namespace
 
 Fault find_volumes_fault(const VolumesView& volumes) {
     if (volumes.rows.row_offset.empty()) {
         return volumes.empty() ? Fault{} : Fault{kVolumesSection, "it has no rows"};
     }
-    if (Fault fault = find_rows_fault(volumes.rows, kVolumesSection); !fault.what.empty()) {
-        return fault;
-    }
     UsedParts used;
-    return find_first(volumes, [&](const VolumeRecord& v) {
-        std::string fault = find_kind_fault(v);
-        if (fault.empty()) fault = find_range_fault(volumes, v, used);
-        return fault.empty() ? find_number_fault(volumes, v) : fault;
-    });
+    return find_first_fault(
+        [&] { return find_rows_fault(volumes.rows, kVolumesSection); },
+        [&] {
+            return find_fault_in(kVolume, volumes.records.size(), [&](std::size_t i) {
+                const VolumeRecord& v = volumes.records[i];
+                return find_first_fault([&] { return find_kind_fault(v); },
+                                        [&] { return find_range_fault(volumes, v, used); },
+                                        [&] { return find_number_fault(volumes, v); });
+            });
+        });
 }
 
 Fault find_volume_value_fault(const VolumesView& volumes) {
     if (volumes.empty()) return {};
-    if (Fault fault = find_row_value_fault(volumes.rows, kVolumesSection); !fault.what.empty()) {
-        return fault;
-    }
-    return find_first(volumes, [&](const VolumeRecord& v) {
-        std::string fault = find_record_value_fault(v);
-        if (fault.empty()) fault = find_phase_fault(volumes, v);
-        return fault.empty() ? find_brick_value_fault(volumes, v) : fault;
-    });
+    return find_first_fault(
+        [&] { return find_row_value_fault(volumes.rows, kVolumesSection); },
+        [&] {
+            return find_fault_in(kVolume, volumes.records.size(), [&](std::size_t i) {
+                const VolumeRecord& v = volumes.records[i];
+                return find_first_fault([&] { return find_record_value_fault(v); },
+                                        [&] { return find_phase_fault(volumes, v); },
+                                        [&] { return find_brick_value_fault(volumes, v); });
+            });
+        });
 }
 
 }  // namespace opaline::formats

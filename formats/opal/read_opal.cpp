@@ -2,6 +2,8 @@
 
 #include <zstd.h>
 
+#include <algorithm>
+#include <iterator>
 #include <new>
 #include <utility>
 
@@ -88,25 +90,38 @@ bool read_normal_maps(SectionCursor cursor, AssetView& view) {
            cursor.take(head.vertices, view.normal_maps.tangent) && cursor.at_end();
 }
 
-bool read_transport(SectionCursor cursor, AssetView& view) {
-    return take_rows(cursor, view.transport) && cursor.at_end();
+// A section that is read: how, its bit among those that must be there, and its versions.
+struct KnownSection {
+    std::uint32_t id;
+    bool (*read)(SectionCursor, AssetView&);
+    unsigned bit = 0;
+    std::uint32_t earliest = 1, latest = 1;
+};
+
+// Reads a part of the view, to the end of the section.
+template <auto kTake, class Part>
+constexpr auto read_part(Part) {
+    return [](SectionCursor cursor, AssetView& view) {
+        return kTake(cursor, Part()(view)) && cursor.at_end();
+    };
 }
 
-bool read_volumes(SectionCursor cursor, AssetView& view) {
-    return take_volumes(cursor, view.volumes) && cursor.at_end();
-}
-
-bool read_clouds(SectionCursor cursor, AssetView& view) {
-    return take_clouds(cursor, view.clouds) && cursor.at_end();
-}
-
-bool read_emitters(SectionCursor cursor, AssetView& view) {
-    return take_emitters(cursor, view.emitters) && cursor.at_end();
-}
-
-bool read_glow(SectionCursor cursor, AssetView& view) {
-    return take_glow(cursor, view.volumes.glow) && cursor.at_end();
-}
+constexpr KnownSection kKnownSections[] = {
+    {kBasiSection, read_basis, 1},
+    {kPrimSection, read_primitives, 2, 1, kSheetVersion},
+    {kTranSection, read_part<take_rows>([](AssetView& v) -> auto& { return v.transport; }), 4,
+     kTransportVersion, kTransportVersion},
+    {kMeshSection, read_mesh, 8},
+    {kImagSection, read_images},
+    {kSpecSection, read_specular},
+    {kGlosSection, read_gloss},
+    {kHoleSection, read_holes, 0, 1, kClearHolesVersion},
+    {kNormSection, read_normal_maps, 0, 1, kMappedSheetVersion},
+    {kVoluSection, read_part<take_volumes>([](AssetView& v) -> auto& { return v.volumes; })},
+    {kClouSection, read_part<take_clouds>([](AssetView& v) -> auto& { return v.clouds; })},
+    {kEmitSection, read_part<take_emitters>([](AssetView& v) -> auto& { return v.emitters; })},
+    {kGlowSection, read_part<take_glow>([](AssetView& v) -> auto& { return v.volumes.glow; })},
+    {kProvSection, [](SectionCursor, AssetView&) { return true; }}};
 
 }  // namespace
 
@@ -149,61 +164,18 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         if (checks == Checks::full && checksum(content) != entry.checksum) {
             return damaged(where, "its checksum does not match");
         }
-        bool (*read)(SectionCursor, AssetView&) = nullptr;
-        unsigned bit = 0;
-        std::uint32_t earliest = 1, latest = 1;
-        switch (entry.id) {
-            case kBasiSection:
-                read = read_basis, bit = 1;
-                break;
-            case kPrimSection:
-                read = read_primitives, bit = 2, latest = kSheetVersion;
-                break;
-            case kTranSection:
-                read = read_transport, bit = 4, earliest = latest = kTransportVersion;
-                break;
-            case kMeshSection:
-                read = read_mesh, bit = 8;
-                break;
-            case kImagSection:
-                read = read_images;
-                break;
-            case kSpecSection:
-                read = read_specular;
-                break;
-            case kGlosSection:
-                read = read_gloss;
-                break;
-            case kHoleSection:
-                read = read_holes, latest = kClearHolesVersion;
-                break;
-            case kNormSection:
-                read = read_normal_maps, latest = kMappedSheetVersion;
-                break;
-            case kVoluSection:
-                read = read_volumes;
-                break;
-            case kClouSection:
-                read = read_clouds;
-                break;
-            case kEmitSection:
-                read = read_emitters;
-                break;
-            case kGlowSection:
-                read = read_glow;
-                break;
-            case kProvSection:
-                break;
-            default:
-                continue;  // of a later minor version, or somebody else's
+        const KnownSection* const known =
+            std::ranges::find(kKnownSections, entry.id, &KnownSection::id);
+        if (known == std::end(kKnownSections)) {
+            continue;  // of a later minor version, or somebody else's
         }
-        if (entry.version > 0 && entry.version < earliest) {
+        if (entry.version > 0 && entry.version < known->earliest) {
             return make_error(
                 ErrorKind::bad_input, file, where,
                 "version " + std::to_string(entry.version) + " is of an earlier Opaline",
                 "bake it again");
         }
-        if (entry.version == 0 || entry.version > latest) {
+        if (entry.version == 0 || entry.version > known->latest) {
             return make_error(ErrorKind::newer_file, file, where,
                               "version " + std::to_string(entry.version) + " is unknown",
                               "update Opaline");
@@ -233,10 +205,10 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         if (entry.id == kProvSection) {
             loaded.view.provenance = {reinterpret_cast<const char*>(content.data()),
                                       content.size()};
-        } else if (!read(SectionCursor(content), loaded.view)) {
+        } else if (!known->read(SectionCursor(content), loaded.view)) {
             return damaged(where, "its counts do not agree with its size");
         }
-        found |= bit;
+        found |= known->bit;
     }
     if (found != 15) {
         return damaged("section table", "BASI, PRIM, TRAN and MESH must all be there");

@@ -7,11 +7,46 @@
 
 namespace opaline::tests {
 
+/// Random rows for `step`: each `step`-th coefficient from `first` on is there, values from `low`.
+inline formats::SparseRow make_random_row(std::uint32_t bands, std::uint32_t first,
+                                          std::uint32_t step, float low, std::mt19937& generator) {
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    formats::SparseRow row;
+    row.bands = bands;
+    for (std::uint32_t k = first; k < formats::cubemap_texels(8); k += step) {
+        if (k % 64 != 0) row.index.push_back(k);
+    }
+    for (std::size_t i = 0; i < row.index.size() * bands; ++i) {
+        row.value.push_back(uniform(generator) - 0.5f);
+    }
+    for (std::size_t i = 0; i < bands * std::size_t{6}; ++i) {
+        row.average.push_back(uniform(generator) + low);
+    }
+    return row;
+}
+
+/// Adds `record`, whose counts and bands are set, where the asset's arrays end.
+inline void add_primitive(formats::Asset& asset, formats::PrimitiveRecord record) {
+    record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+    record.first_index = static_cast<std::uint32_t>(asset.index.size());
+    record.first_row = asset.transport.view().rows();
+    record.first_band_row = static_cast<std::uint32_t>(asset.transport.detail_scale.size());
+    record.first_code = asset.transport.code8.size() + asset.transport.code16.size();
+    asset.primitives.push_back(record);
+}
+
+inline void add_vertex(formats::Asset& asset, formats::Vec3 position, formats::Rgb color,
+                       formats::Float2 texcoord) {
+    asset.position.push_back(position);
+    asset.normal.push_back({0, 0, 1});
+    asset.base_color.push_back(color);
+    asset.texcoord.push_back(texcoord);
+}
+
 /// A small sound asset: a grey primitive and a textured RGB one, n = 8.
 inline formats::Asset make_small_asset(std::uint32_t code_bits = 8) {
     using namespace formats;
     std::mt19937 generator(7);
-    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
     Asset asset;
     asset.provenance = R"({"generator":"test"})";
     asset.transport = make_sparse_rows(8, code_bits);
@@ -19,39 +54,16 @@ inline formats::Asset make_small_asset(std::uint32_t code_bits = 8) {
     for (std::uint32_t p = 0; p < 2; ++p) {
         PrimitiveRecord record;
         record.bands = p == 0 ? 1 : 3;
-        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
         record.vertex_count = 4;
-        record.first_index = static_cast<std::uint32_t>(asset.index.size());
         record.index_count = 6;
-        record.first_row = asset.transport.view().rows();
-        record.first_band_row = static_cast<std::uint32_t>(asset.transport.detail_scale.size());
-        record.first_code = asset.transport.code8.size() + asset.transport.code16.size();
         record.base_color_image = p == 0 ? kNoImage : 0;
+        add_primitive(asset, record);
         for (std::uint32_t v = 0; v < 4; ++v) {
-            asset.position.push_back(
-                {static_cast<float>(v & 1u), static_cast<float>(v >> 1u), static_cast<float>(p)});
-            asset.normal.push_back({0, 0, 1});
-            asset.base_color.push_back({0.5f, 0.6f, 0.7f});
-            asset.texcoord.push_back({static_cast<float>(v & 1u), static_cast<float>(v >> 1u)});
-            SparseRow row;
-            row.bands = record.bands;
-            for (std::uint32_t k = 1; k < cubemap_texels(8); k += 3 + v) {
-                if (k % 64 != 0) {
-                    row.index.push_back(k);
-                }
-            }
-            for (std::size_t i = 0; i < row.index.size() * row.bands; ++i) {
-                row.value.push_back(uniform(generator) - 0.5f);
-            }
-            for (std::size_t i = 0; i < row.bands * std::size_t{6}; ++i) {
-                row.average.push_back(uniform(generator));
-            }
-            append_row(asset.transport, row);
+            const float x = static_cast<float>(v & 1u), y = static_cast<float>(v >> 1u);
+            add_vertex(asset, {x, y, static_cast<float>(p)}, {0.5f, 0.6f, 0.7f}, {x, y});
+            append_row(asset.transport, make_random_row(record.bands, 1, 3 + v, 0, generator));
         }
-        for (const std::uint32_t i : {0u, 1u, 2u, 1u, 3u, 2u}) {
-            asset.index.push_back(i);
-        }
-        asset.primitives.push_back(record);
+        asset.index.insert(asset.index.end(), {0u, 1u, 2u, 1u, 3u, 2u});
     }
     return asset;
 }
@@ -61,42 +73,20 @@ inline void add_translucent_triangle(formats::Asset& asset, std::uint32_t terms,
                                      bool is_separate = false, std::uint32_t bands = 3) {
     using namespace formats;
     std::mt19937 generator(8);
-    std::uniform_real_distribution<float> uniform(-0.5f, 0.5f);
     PrimitiveRecord record;
     record.shading = Shading::translucent;
     record.terms = terms;
     record.bands = bands;
     record.flags = is_separate ? PrimitiveRecord::kSeparate : 0;
     record.eta = eta;
-    record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
-    record.vertex_count = 3;
-    record.first_index = static_cast<std::uint32_t>(asset.index.size());
-    record.index_count = 3;
-    record.first_row = asset.transport.view().rows();
-    record.first_band_row = static_cast<std::uint32_t>(asset.transport.detail_scale.size());
-    record.first_code = asset.transport.code8.size() + asset.transport.code16.size();
-    asset.primitives.push_back(record);
+    record.vertex_count = record.index_count = 3;
+    add_primitive(asset, record);
     for (std::uint32_t v = 0; v < 3; ++v) {
-        asset.position.push_back({static_cast<float>(v == 1), static_cast<float>(v == 2), 0});
-        asset.normal.push_back({0, 0, 1});
-        asset.base_color.push_back({1, 1, 1});
-        asset.texcoord.push_back({0, 0});
+        add_vertex(asset, {static_cast<float>(v == 1), static_cast<float>(v == 2), 0}, {1, 1, 1},
+                   {0, 0});
         asset.index.push_back(v);
         for (std::uint32_t k = 0; k < terms; ++k) {
-            SparseRow row;
-            row.bands = bands;
-            for (std::uint32_t i = 1 + k; i < cubemap_texels(8); i += 5 + v) {
-                if (i % 64 != 0) {
-                    row.index.push_back(i);
-                }
-            }
-            for (std::size_t i = 0; i < bands * row.index.size(); ++i) {
-                row.value.push_back(uniform(generator));
-            }
-            for (std::size_t i = 0; i < bands * std::size_t{6}; ++i) {
-                row.average.push_back(uniform(generator));
-            }
-            append_row(asset.transport, row);
+            append_row(asset.transport, make_random_row(bands, 1 + k, 5 + v, -0.5f, generator));
         }
     }
 }

@@ -1,7 +1,6 @@
 // Cloud layers that are written come back, and what no writer may write is refused by name.
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -19,8 +18,6 @@ namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using tests::AlignedBytes;
-using tests::encode;
 using tests::make_cloud_asset;
 
 constexpr float kNotANumber = std::numeric_limits<float>::quiet_NaN();
@@ -33,54 +30,31 @@ void expect_same_clouds(const CloudsView& a, const CloudsView& b) {
     tests::expect_same_bytes(a.value, b.value);
 }
 
-TEST(CloudsFile, ReturnsEveryValueItWasGivenWithoutAnyPrimitive) {
+TEST(CloudsFile, ReturnsEveryValueInPlaceWithoutAnyPrimitive) {
     for (const bool has_all : {true, false}) {
         const Asset asset = make_cloud_asset({.has_peak = has_all, .has_radiance = has_all});
-        AlignedBytes stored(encode(asset));
-        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-        ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
-        const AssetView& view = loaded->view;
+        tests::StoredAsset stored(asset);
+        const AssetView& view = stored.view();
         EXPECT_TRUE(view.primitives.empty() && view.position.empty() && view.volumes.empty());
         expect_same_clouds(view.clouds, asset.clouds.view());
-        EXPECT_EQ(loaded->sections.back().id, kClouSection);
-        EXPECT_EQ(loaded->sections.back().version, 1u);
+        EXPECT_TRUE(stored.holds(view.clouds.records) && stored.holds(view.clouds.thickness));
+        EXPECT_TRUE(stored.holds(view.clouds.ground) && stored.holds(view.clouds.value));
+        EXPECT_EQ(stored.version_of(kClouSection), 1u);
+        EXPECT_EQ(opal_size(asset.view()), stored.stored.bytes().size());
     }
 }
 
 TEST(CloudsFile, StandsBesideAllElseAndIsAbsentWithoutLayers) {
     Asset asset = tests::make_small_asset();
     tests::add_volume(asset, {});
-    const std::vector<std::byte> without = encode(asset);
+    const tests::StoredAsset without(asset);
+    EXPECT_TRUE(without.view().clouds.empty());
+    EXPECT_EQ(without.version_of(kClouSection), 0u);
     tests::add_layer(asset);
-    AlignedBytes stored(encode(asset));
-    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
-    expect_same_clouds(loaded->view.clouds, asset.clouds.view());
-    EXPECT_EQ(loaded->view.volumes.records.size(), 1u);
-    EXPECT_EQ(loaded->view.primitives.size(), 2u);
-
-    AlignedBytes plain(without);
-    const auto other = read_opal(plain.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(other);
-    EXPECT_TRUE(other->view.clouds.empty());
-    EXPECT_EQ(other->sections.size() + 1, loaded->sections.size());
-}
-
-TEST(CloudsFile, IsUsedInPlaceAndItsSizeIsKnownBeforeItIsWritten) {
-    const Asset asset = make_cloud_asset();
-    AlignedBytes stored(encode(asset));
-    EXPECT_EQ(opal_size(asset.view()), stored.bytes().size());
-    const auto loaded = read_opal(stored.bytes(), "a.opal");
-    ASSERT_TRUE(loaded);
-    const auto expect_inside = [&](auto span) {
-        const auto bytes = std::as_bytes(span);
-        EXPECT_GE(bytes.data(), stored.bytes().data());
-        EXPECT_LE(bytes.data() + bytes.size(), stored.bytes().data() + stored.bytes().size());
-    };
-    expect_inside(loaded->view.clouds.records);
-    expect_inside(loaded->view.clouds.thickness);
-    expect_inside(loaded->view.clouds.ground);
-    expect_inside(loaded->view.clouds.value);
+    const tests::StoredAsset stored(asset);
+    expect_same_clouds(stored.view().clouds, asset.clouds.view());
+    EXPECT_EQ(stored.view().volumes.records.size(), 1u);
+    EXPECT_EQ(stored.view().primitives.size(), 2u);
 }
 
 // Tables of a band follow each other in the order of formats/README.md, bands too.
@@ -138,71 +112,66 @@ TEST(UsedPart, NoPartBeginsBeforeTheOnesThatWereTaken) {
 
 // The fault of the fixture's layer after change(Clouds&, LayerRecord&).
 template <class Change>
-std::string layer_fault(Change change) {
-    Asset asset = make_cloud_asset();
-    change(asset.clouds, asset.clouds.records[0]);
-    return tests::fault_of(asset, Checks::structure);
+std::string layer_fault(Change change, Checks checks = Checks::structure) {
+    return tests::fault_after(
+        make_cloud_asset(), [&](Asset& asset) { change(asset.clouds, asset.clouds.records[0]); },
+        checks);
 }
 
 // Of a change that the check of the structure lets pass.
 template <class Change>
 std::string table_fault(Change change) {
-    Asset asset = make_cloud_asset();
-    change(asset.clouds, asset.clouds.records[0]);
-    EXPECT_EQ(tests::fault_of(asset, Checks::structure), "");
-    return tests::fault_of(asset, Checks::full);
+    EXPECT_EQ(layer_fault(change), "");
+    return layer_fault(change, Checks::full);
+}
+
+template <class Change>
+void expect_layer_fault(const char* what, Change change) {
+    EXPECT_THAT(layer_fault([&](Clouds&, LayerRecord& layer) { change(layer); }),
+                AllOf(HasSubstr("section CLOU, layer 0: "), HasSubstr(what)));
 }
 
 // Sets the number that `field`, a reference to it from the record, gives.
 template <class Field>
-void expect_refused(const char* what, Field field, std::initializer_list<float> bad) {
+void expect_refused(const char* what, const std::vector<float>& bad, Field field) {
     for (const float value : bad) {
-        EXPECT_THAT(layer_fault([&](Clouds&, LayerRecord& layer) { field(layer) = value; }),
-                    AllOf(HasSubstr("section CLOU, layer 0: "), HasSubstr(what)))
-            << value;
+        SCOPED_TRACE(value);
+        expect_layer_fault(what, [&](LayerRecord& layer) { field(layer) = value; });
     }
 }
 
 TEST(CloudsFile, PlacesOutOfRangeAreRefusedByName) {
     EXPECT_EQ(layer_fault([](Clouds&, LayerRecord&) {}), "");
     using Layer = LayerRecord;
-    expect_refused("its base at", [](Layer& l) -> float& { return l.base; },
-                   {-20, -21, kNotANumber, kEndless, 2e9f});
-    expect_refused("its base at", [](Layer& l) -> float& { return l.ground; },
-                   {800, 900, kNotANumber, -kEndless, -2e9f});
-    const std::initializer_list<float> beyond{kNotANumber, kEndless, -2e9f};
-    expect_refused(
-        "its centre", [](Layer& l) -> float& { return l.center[0]; }, beyond);
-    expect_refused(
-        "its centre", [](Layer& l) -> float& { return l.center[1]; }, beyond);
-    expect_refused(
-        "wind", [](Layer& l) -> float& { return l.wind[0]; }, beyond);
-    expect_refused(
-        "wind", [](Layer& l) -> float& { return l.wind[1]; }, beyond);
-    const std::initializer_list<float> not_wide{0, -1, 1e-4f, 2e9f, kNotANumber, kEndless};
-    expect_refused(
-        "m wide", [](Layer& l) -> float& { return l.size[0]; }, not_wide);
-    expect_refused(
-        "m wide", [](Layer& l) -> float& { return l.size[1]; }, not_wide);
-    const std::initializer_list<float> below{-1e-6f, 2e9f, kNotANumber, kEndless};
-    expect_refused(
-        "thickness", [](Layer& l) -> float& { return l.highest; }, below);
-    expect_refused(
-        "haze", [](Layer& l) -> float& { return l.haze; }, below);
+    const float nan = kNotANumber, inf = kEndless;
+    const std::vector<float> beyond{nan, inf, -2e9f}, below{-1e-6f, 2e9f, nan, inf};
+    expect_refused("its base at", {-20, -21, nan, inf, 2e9f},
+                   [](Layer& l) -> float& { return l.base; });
+    expect_refused("its base at", {800, 900, nan, -inf, -2e9f},
+                   [](Layer& l) -> float& { return l.ground; });
+    for (const std::size_t i : {0u, 1u}) {
+        expect_refused("its centre", beyond, [=](Layer& l) -> float& { return l.center[i]; });
+        expect_refused("wind", beyond, [=](Layer& l) -> float& { return l.wind[i]; });
+        expect_refused("m wide", {0, -1, 1e-4f, 2e9f, nan, inf},
+                       [=](Layer& l) -> float& { return l.size[i]; });
+    }
+    expect_refused("thickness", below, [](Layer& l) -> float& { return l.highest; });
+    expect_refused("haze", below, [](Layer& l) -> float& { return l.haze; });
 }
 
 TEST(CloudsFile, BandsOutOfRangeAreRefusedByName) {
     using Layer = LayerRecord;
-    expect_refused("its forward peak of", [](Layer& l) -> float& { return l.peak_angle; },
-                   {-0.1f, 1.5708f, kNotANumber, kEndless});
-    expect_refused("its extinction", [](Layer& l) -> float& { return l.band[1].kappa; },
-                   {-1e-6f, 2e6f, kNotANumber, kEndless});
-    expect_refused("of the light", [](Layer& l) -> float& { return l.band[2].peak_weight; },
-                   {-1e-6f, 1, kNotANumber, kEndless});
-    expect_refused("a mean cosine", [](Layer& l) -> float& { return l.band[0].g; },
-                   {-1, 1, kNotANumber, kEndless});
-    expect_refused("a band has a value", [](Layer& l) -> float& { return l.band[2].reserved; },
-                   {1, kNotANumber});
+    const float nan = kNotANumber, inf = kEndless;
+    expect_refused("its forward peak of", {-0.1f, 1.5708f, nan, inf},
+                   [](Layer& l) -> float& { return l.peak_angle; });
+    expect_refused("its extinction", {-1e-6f, 2e6f, nan, inf},
+                   [](Layer& l) -> float& { return l.band[1].kappa; });
+    expect_refused("of the light", {-1e-6f, 1, nan, inf},
+                   [](Layer& l) -> float& { return l.band[2].peak_weight; });
+    expect_refused("a mean cosine", {-1, 1, nan, inf},
+                   [](Layer& l) -> float& { return l.band[0].g; });
+    expect_refused("a band has a value", {1, nan},
+                   [](Layer& l) -> float& { return l.band[2].reserved; });
 }
 
 TEST(CloudsFile, FlagsAndValuesOfLaterVersionsAreRefused) {
@@ -222,9 +191,8 @@ TEST(CloudsFile, FramesThatDoNotExistAreRefusedByName) {
     }
     EXPECT_THAT(layer_fault([](Clouds&, LayerRecord& l) { l.frames = kMaxLayerFrames; }),
                 HasSubstr("lie outside their arrays"));
-    expect_refused("frames of thickness are",
-                   [](LayerRecord& l) -> float& { return l.frame_seconds; },
-                   {0, -1, 1e-4f, 2e9f, kNotANumber, kEndless});
+    expect_refused("frames of thickness are", {0, -1, 1e-4f, 2e9f, kNotANumber, kEndless},
+                   [](LayerRecord& l) -> float& { return l.frame_seconds; });
     const auto of_one = [](float seconds, std::uint32_t flags) {
         return layer_fault([=](Clouds&, LayerRecord& l) {
             l.frames = 1;
@@ -244,39 +212,33 @@ TEST(CloudsFile, CountsThatDoNotExistAreRefusedByName) {
         EXPECT_THAT(layer_fault([=](Clouds&, LayerRecord& l) { l.ground_rows = side; }),
                     HasSubstr("its ground 2 x " + std::to_string(side)));
     }
-    const auto expect_count = [](const char* what, auto change) {
-        EXPECT_THAT(layer_fault([&](Clouds&, LayerRecord& l) { change(l); }), HasSubstr(what));
-    };
-    expect_count("1 angles", [](LayerRecord& l) { l.phase_angles = 1; });
-    expect_count("0 depths", [](LayerRecord& l) { l.flux_depths = 0; });
-    expect_count("1 cosines", [](LayerRecord& l) { l.flux_cosines = 1; });
-    expect_count("its glow has 1 angles", [](LayerRecord& l) { l.glow_angles = 1; });
-    expect_count("0 numbers of events", [](LayerRecord& l) { l.glow_events = 0; });
-    expect_count("its glow", [](LayerRecord& l) { l.glow_angles = l.glow_events = 0; });
-    expect_count("of the light", [](LayerRecord& l) { l.peak_angle = 0; });
-    expect_count("its glow", [](LayerRecord& l) {
+    expect_layer_fault("1 angles", [](LayerRecord& l) { l.phase_angles = 1; });
+    expect_layer_fault("0 depths", [](LayerRecord& l) { l.flux_depths = 0; });
+    expect_layer_fault("1 cosines", [](LayerRecord& l) { l.flux_cosines = 1; });
+    expect_layer_fault("its glow has 1 angles", [](LayerRecord& l) { l.glow_angles = 1; });
+    expect_layer_fault("0 numbers of events", [](LayerRecord& l) { l.glow_events = 0; });
+    expect_layer_fault("its glow", [](LayerRecord& l) { l.glow_angles = l.glow_events = 0; });
+    expect_layer_fault("of the light", [](LayerRecord& l) { l.peak_angle = 0; });
+    expect_layer_fault("its glow", [](LayerRecord& l) {
         l.peak_angle = 0;
         for (LayerBand& band : l.band)
             band.peak_weight = 0;
     });
-    expect_count("1 depths", [](LayerRecord& l) { l.radiance_depths = 1; });
-    expect_count("1 cosines", [](LayerRecord& l) { l.radiance_cosines = 1; });
-    expect_count("0 modes", [](LayerRecord& l) { l.radiance_modes = 0; });
+    expect_layer_fault("1 depths", [](LayerRecord& l) { l.radiance_depths = 1; });
+    expect_layer_fault("1 cosines", [](LayerRecord& l) { l.radiance_cosines = 1; });
+    expect_layer_fault("0 modes", [](LayerRecord& l) { l.radiance_modes = 0; });
 }
 
 TEST(CloudsFile, PartsBeyondTheirArraysAreRefused) {
-    const auto expect_outside = [](const char* what, auto change) {
-        EXPECT_THAT(layer_fault([&](Clouds&, LayerRecord& l) { change(l); }), HasSubstr(what));
-    };
     const char* const outside = "lie outside their arrays";
-    expect_outside(outside, [](LayerRecord& l) { l.first_thickness = 1; });
-    expect_outside(outside, [](LayerRecord& l) { l.first_ground = UINT64_MAX; });
-    expect_outside(outside, [](LayerRecord& l) { l.first_value = UINT64_MAX - 100; });
-    expect_outside(outside, [](LayerRecord& l) { ++l.columns; });
-    expect_outside(outside, [](LayerRecord& l) { ++l.ground_rows; });
-    expect_outside(outside, [](LayerRecord& l) { ++l.radiance_modes; });
-    expect_outside(outside, [](LayerRecord& l) { l.phase_angles = 0xffffffffu; });
-    expect_outside("larger than all", [](LayerRecord& l) { l.flux_cosines = 0x40000000u; });
+    expect_layer_fault(outside, [](LayerRecord& l) { l.first_thickness = 1; });
+    expect_layer_fault(outside, [](LayerRecord& l) { l.first_ground = UINT64_MAX; });
+    expect_layer_fault(outside, [](LayerRecord& l) { l.first_value = UINT64_MAX - 100; });
+    expect_layer_fault(outside, [](LayerRecord& l) { ++l.columns; });
+    expect_layer_fault(outside, [](LayerRecord& l) { ++l.ground_rows; });
+    expect_layer_fault(outside, [](LayerRecord& l) { ++l.radiance_modes; });
+    expect_layer_fault(outside, [](LayerRecord& l) { l.phase_angles = 0xffffffffu; });
+    expect_layer_fault("larger than all", [](LayerRecord& l) { l.flux_cosines = 0x40000000u; });
     EXPECT_THAT(layer_fault([](Clouds& c, LayerRecord&) { c.value.pop_back(); }),
                 HasSubstr(outside));
     EXPECT_THAT(layer_fault([](Clouds& c, LayerRecord&) { c.thickness.clear(); }),

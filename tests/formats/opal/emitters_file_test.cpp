@@ -8,7 +8,6 @@
 #include "formats/opal/half.h"
 #include "tests/formats/opal/emitter_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
-#include "tests/formats/opal/section_damage.h"
 
 namespace opaline::formats {
 namespace {
@@ -60,25 +59,17 @@ TEST(EmitterBlocks, ValuesErrByTheirLastBitAtMost) {
     }
 }
 
-void expect_same_emitters(const EmittersView& a, const EmittersView& b) {
-    tests::expect_same_bytes(a.name_end, b.name_end);
-    tests::expect_same_bytes(a.text, b.text);
-    tests::expect_same_bytes(a.block, b.block);
-    tests::expect_same_bytes(a.own, b.own);
-    tests::expect_same_bytes(a.value, b.value);
-}
-
 TEST(EmittersFile, ReturnsEveryValueItWasGivenAndIsAbsentWithoutEmitters) {
     const Asset asset = make_emitter_asset();
-    tests::AlignedBytes stored(tests::encode(asset));
-    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
-    const EmittersView& emitters = loaded->view.emitters;
-    expect_same_emitters(emitters, asset.emitters.view());
-    EXPECT_EQ(loaded->sections.back().id, kEmitSection);
-    EXPECT_EQ(loaded->sections.back().version, 1u);
-    EXPECT_EQ(opal_size(asset.view()), stored.bytes().size());
-
+    tests::StoredAsset stored(asset);
+    const EmittersView& emitters = stored.view().emitters;
+    tests::expect_same_bytes(emitters.name_end, asset.emitters.name_end);
+    tests::expect_same_bytes(emitters.text, asset.emitters.text);
+    tests::expect_same_bytes(emitters.block, asset.emitters.block);
+    tests::expect_same_bytes(emitters.own, asset.emitters.own);
+    tests::expect_same_bytes(emitters.value, asset.emitters.value);
+    EXPECT_EQ(stored.version_of(kEmitSection), 1u);
+    EXPECT_EQ(opal_size(asset.view()), stored.stored.bytes().size());
     EXPECT_EQ(emitters.name(1), "Panel");
     EXPECT_EQ(find_emitter(emitters, "Panel"), 1u);
     EXPECT_EQ(find_emitter(emitters, "Pane"), 2u);
@@ -87,30 +78,17 @@ TEST(EmittersFile, ReturnsEveryValueItWasGivenAndIsAbsentWithoutEmitters) {
     EXPECT_EQ(emitters.blocks_of(7).size(), 0u);
     EXPECT_EQ(emitters.own_of(0)->radiance, (Rgb{100, 50, 25}));
     EXPECT_EQ(emitters.own_of(1), nullptr);
-
-    tests::AlignedBytes plain(tests::encode(tests::make_small_asset()));
-    const auto other = read_opal(plain.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(other);
-    EXPECT_TRUE(other->view.emitters.empty());
-    EXPECT_EQ(other->sections.size() + 1, loaded->sections.size());
-}
-
-// The fault after change(Asset&).
-template <class Change>
-std::string emitter_fault(Change change, Checks checks = Checks::structure) {
-    Asset asset = make_emitter_asset();
-    change(asset);
-    return tests::fault_of(asset, checks);
+    EXPECT_EQ(tests::StoredAsset(tests::make_small_asset()).version_of(kEmitSection), 0u);
 }
 
 template <class Change>
 void expect_refused(const char* what, Change change) {
-    EXPECT_THAT(emitter_fault([&](Asset& asset) { change(asset.emitters); }), HasSubstr(what));
+    EXPECT_THAT(tests::fault_after(make_emitter_asset(), [&](Asset& a) { change(a.emitters); }),
+                HasSubstr(what));
 }
 
 TEST(EmittersFile, NamesThatAreNoneAreRefused) {
     const char* const bad = "section EMIT, emitter 1: its name is empty";
-    EXPECT_EQ(emitter_fault([](Asset&) {}), "");
     expect_refused(bad, [](Emitters& e) { e.name_end[1] = e.name_end[0]; });
     expect_refused(bad, [](Emitters& e) { e.name_end[1] = 100; });
     expect_refused(bad, [](Emitters& e) {
@@ -159,40 +137,9 @@ TEST(EmittersFile, OwnLightThatIsNoneIsRefused) {
 
 TEST(EmittersFile, ValuesThatAreNotFiniteAreRefusedByTheFullCheck) {
     const auto break_value = [](Asset& asset) { asset.emitters.value[5] = 0x7c01; };
-    EXPECT_EQ(emitter_fault(break_value), "");
-    EXPECT_EQ(emitter_fault(break_value, Checks::full), "section EMIT, value 5: it is not finite");
-}
-
-TEST(EmittersDamage, EveryTruncationAndFlippedByteIsRefused) {
-    tests::expect_section_truncations_refused(make_emitter_asset(), kEmitSection);
-    tests::expect_flipped_bytes_found(make_emitter_asset(), kEmitSection);
-}
-
-// Uses everything that a runtime would use; the address sanitizer watches.
-void use_emitters(const AssetView& asset) {
-    const EmittersView& emitters = asset.emitters;
-    double sum = static_cast<double>(list_emitters(emitters).size());
-    for (const EmitterBlock& block : emitters.block) {
-        const PrimitiveRecord& primitive = asset.primitives[block.primitive];
-        for (std::size_t row = 0; row < primitive.vertex_count * primitive.terms; ++row) {
-            sum += double{block_value(emitters, block, row).b};
-        }
-        sum += static_cast<double>(emitters.name(block.emitter).size());
-    }
-    for (const OwnLight& own : emitters.own) {
-        sum += static_cast<double>(emitters.name(own.emitter).size());
-        if (own.image != kNoImage) sum += asset.images[own.image].rgb[0];
-    }
-    volatile double used = sum;
-    (void)used;
-}
-
-TEST(EmittersDamage, ConsistentlyForgedSectionsAreRefusedOrStayInBounds) {
-    const auto [refused, accepted, refused_for_values] =
-        tests::forge_section(make_emitter_asset(), kEmitSection, 48 + 16 + 16 + 80, use_emitters);
-    EXPECT_GT(refused, 50u);
-    EXPECT_GT(accepted, 50u);
-    EXPECT_GE(accepted, refused_for_values);
+    EXPECT_EQ(tests::fault_after(make_emitter_asset(), break_value), "");
+    EXPECT_EQ(tests::fault_after(make_emitter_asset(), break_value, Checks::full),
+              "section EMIT, value 5: it is not finite");
 }
 
 }  // namespace

@@ -1,13 +1,10 @@
 // Holes of surfaces that are written come back, and what no writer may write is refused by name.
 #include <gmock/gmock.h>
 
-#include <functional>
 #include <limits>
-#include <string>
 
 #include "tests/formats/opal/hole_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
-#include "tests/formats/opal/section_damage.h"
 
 namespace opaline::formats {
 namespace {
@@ -17,26 +14,18 @@ using tests::make_hole_asset;
 
 TEST(HolesFile, WhatIsWrittenComesBackAndSurfacesWithoutAreWhole) {
     const Asset asset = make_hole_asset();
-    tests::AlignedBytes stored(tests::encode(asset));
-    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(loaded);
-    const HolesView& holes = loaded->view.holes;
-    tests::expect_same_bytes(holes.record, std::span<const HoleRecord>(asset.holes.record));
-    tests::expect_same_bytes(holes.vertex_alpha, std::span<const float>(asset.holes.vertex_alpha));
+    const tests::StoredAsset stored(asset);
+    const HolesView& holes = stored.view().holes;
+    tests::expect_same_bytes(holes.record, asset.holes.record);
+    tests::expect_same_bytes(holes.vertex_alpha, asset.holes.vertex_alpha);
     EXPECT_EQ(holes.of(1)->wrap_v, Wrap::mirror);
     EXPECT_EQ(holes.of(2), nullptr);
-
-    tests::AlignedBytes whole(tests::encode(tests::make_small_asset()));
-    const auto table = read_section_table(whole.bytes(), "a.opal");
-    ASSERT_TRUE(table);
-    for (const SectionEntry& section : *table) {
-        EXPECT_NE(section.id, kHoleSection);
-    }
+    EXPECT_EQ(tests::StoredAsset(tests::make_small_asset()).version_of(kHoleSection), 0u);
 }
 
 TEST(HolesFile, WhatCannotBeIsRefusedByName) {
     constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-    const std::pair<std::function<void(Asset&)>, const char*> cases[]{
+    const std::vector<tests::Impossible> cases{
         {[](Asset& a) { a.holes.record[1].primitive = 0; }, "stands twice"},
         {[](Asset& a) { a.holes.record[1].primitive = 2; }, "does not exist"},
         {[](Asset& a) { a.holes.record[0].mode = HoleMode{3}; }, "neither a mask nor a blend"},
@@ -65,20 +54,7 @@ TEST(HolesFile, WhatCannotBeIsRefusedByName) {
          },
          "translucent"},
     };
-    for (const auto& [damage, fault] : cases) {
-        Asset asset = make_hole_asset();
-        damage(asset);
-        tests::AlignedBytes stored(tests::encode(asset));
-        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-        ASSERT_FALSE(loaded) << fault;
-        EXPECT_THAT(loaded.error().diagnostics.front().where, HasSubstr("section HOLE"));
-        EXPECT_THAT(loaded.error().diagnostics.front().fault, HasSubstr(fault));
-    }
-}
-
-TEST(HolesFile, DamagedBytesAreFound) {
-    tests::expect_flipped_bytes_found(make_hole_asset(), kHoleSection);
-    tests::expect_truncations_refused(make_hole_asset());
+    tests::expect_refused(make_hole_asset(), "HOLE", cases, Checks::full);
 }
 
 }  // namespace

@@ -1,10 +1,11 @@
 #pragma once
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
+#include <functional>
 #include <new>
 #include <span>
 #include <string>
@@ -39,22 +40,64 @@ class AlignedBytes {
 };
 
 /// The file that an asset is written to.
-inline std::vector<std::byte> encode(const formats::Asset& asset) {
+inline std::vector<std::byte> encode(const formats::AssetView& asset) {
     const TemporaryFolder folder;
     auto file = formats::AtomicFile::create(folder / "a.opal");
     EXPECT_TRUE(file);
-    EXPECT_TRUE(formats::write_opal(asset.view(), std::move(*file)));
+    EXPECT_TRUE(formats::write_opal(asset, std::move(*file)));
     auto mapped = formats::FileBytes::open(folder / "a.opal");
     EXPECT_TRUE(mapped);
     return {mapped->bytes().begin(), mapped->bytes().end()};
 }
+inline std::vector<std::byte> encode(const formats::Asset& asset) {
+    return encode(asset.view());
+}
 
-template <class T>
-void expect_same_bytes(std::span<const T> a, std::span<const T> b) {
-    ASSERT_EQ(a.size(), b.size());
-    if (!a.empty()) {
-        EXPECT_EQ(std::memcmp(a.data(), b.data(), a.size_bytes()), 0);
+/// An asset that was written and read again, which must succeed.
+struct StoredAsset {
+    explicit StoredAsset(const formats::Asset& asset)
+        : stored(encode(asset)),
+          loaded(formats::read_opal(stored.bytes(), "a.opal", formats::Checks::full)) {
+        EXPECT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
+        if (!loaded) loaded = formats::LoadedAsset{};
     }
+    const formats::AssetView& view() const { return loaded->view; }
+    /// Of a section; 0: it is not there.
+    std::uint32_t version_of(std::uint32_t id) const {
+        for (const formats::SectionEntry& section : loaded->sections) {
+            if (section.id == id) return section.version;
+        }
+        return 0;
+    }
+    /// Whether an array of the view lies in the file.
+    bool holds(auto span) {
+        const auto bytes = std::as_bytes(span), all = std::span<const std::byte>(stored.bytes());
+        return bytes.data() >= all.data() && bytes.data() + bytes.size() <= all.data() + all.size();
+    }
+
+    AlignedBytes stored;
+    formats::Result<formats::LoadedAsset> loaded;
+};
+
+template <class A, class B>
+void expect_same_bytes(const A& a, const B& b) {
+    ASSERT_EQ(std::size(a), std::size(b));
+    if (std::size(a) > 0) {
+        EXPECT_EQ(std::memcmp(std::data(a), std::data(b), std::size(a) * sizeof(*std::data(a))), 0);
+    }
+}
+
+inline void expect_same_rows(const formats::SparseRowsView& a, const formats::SparseRowsView& b) {
+    EXPECT_EQ(a.cubemap_size, b.cubemap_size);
+    EXPECT_EQ(a.code_bits, b.code_bits);
+    expect_same_bytes(a.row_offset, b.row_offset);
+    expect_same_bytes(a.average_scale, b.average_scale);
+    expect_same_bytes(a.detail_scale, b.detail_scale);
+    expect_same_bytes(a.average_code, b.average_code);
+    expect_same_bytes(a.index16, b.index16);
+    expect_same_bytes(a.index32, b.index32);
+    expect_same_bytes(a.code8, b.code8);
+    expect_same_bytes(a.code16, b.code16);
 }
 
 /// "where: fault" of the file that an asset is written to, empty where it passes the checks.
@@ -64,6 +107,31 @@ inline std::string fault_of(const formats::Asset& asset, formats::Checks checks)
     if (loaded) return {};
     const auto& diagnostic = loaded.error().diagnostics.front();
     return diagnostic.where + ": " + diagnostic.fault;
+}
+
+/// That of the asset after change(Asset&).
+template <class Change>
+std::string fault_after(formats::Asset asset, Change change,
+                        formats::Checks checks = formats::Checks::structure) {
+    change(asset);
+    return fault_of(asset, checks);
+}
+
+/// A change that makes an asset impossible, and part of the message.
+struct Impossible {
+    std::function<void(formats::Asset&)> change;
+    const char* fault;
+};
+/// Expects that each of them is refused, in the section named.
+inline void expect_refused(const formats::Asset& asset, const std::string& section,
+                           const std::vector<Impossible>& cases,
+                           formats::Checks checks = formats::Checks::structure) {
+    EXPECT_EQ(fault_of(asset, checks), "");
+    for (const auto& [change, fault] : cases) {
+        EXPECT_THAT(
+            fault_after(asset, change, checks),
+            testing::AllOf(testing::StartsWith("section " + section), testing::HasSubstr(fault)));
+    }
 }
 
 /// The section of a table with this id. Precondition: it is there.

@@ -29,9 +29,8 @@ TEST(ReceiverErrorsFile, WhatIsWrittenComesBackAndAssetsAreReadAsWithout) {
     ASSERT_TRUE(errors);
     EXPECT_EQ(*errors, make_receiver_errors());
     const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-    tests::expect_same_bytes(
-        loaded->view.transport.code8,
-        std::span<const std::int8_t>(tests::make_small_asset().transport.code8));
+    tests::expect_same_bytes(loaded->view.transport.code8,
+                             tests::make_small_asset().transport.code8);
 
     // Of a file without them every byte is as it was.
     const auto plain = tests::encode(tests::make_small_asset());

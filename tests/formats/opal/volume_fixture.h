@@ -3,7 +3,6 @@
 #include <map>
 #include <numbers>
 #include <random>
-#include <utility>
 
 #include "formats/opal/asset.h"
 #include "formats/opal/cubemap.h"

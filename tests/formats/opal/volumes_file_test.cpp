@@ -14,9 +14,8 @@ namespace opaline::formats {
 namespace {
 
 using testing::HasSubstr;
-using tests::AlignedBytes;
-using tests::encode;
 using tests::expect_same_bytes;
+using tests::StoredAsset;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -29,93 +28,54 @@ void expect_same_volumes(const VolumesView& a, const VolumesView& b) {
     expect_same_bytes(a.corner, b.corner);
     expect_same_bytes(a.node, b.node);
     expect_same_bytes(a.phase, b.phase);
-    EXPECT_EQ(a.rows.cubemap_size, b.rows.cubemap_size);
-    EXPECT_EQ(a.rows.code_bits, b.rows.code_bits);
-    expect_same_bytes(a.rows.row_offset, b.rows.row_offset);
-    expect_same_bytes(a.rows.average_scale, b.rows.average_scale);
-    expect_same_bytes(a.rows.detail_scale, b.rows.detail_scale);
-    expect_same_bytes(a.rows.average_code, b.rows.average_code);
-    expect_same_bytes(a.rows.index16, b.rows.index16);
-    expect_same_bytes(a.rows.index32, b.rows.index32);
-    expect_same_bytes(a.rows.code8, b.rows.code8);
-    expect_same_bytes(a.rows.code16, b.rows.code16);
+    tests::expect_same_rows(a.rows, b.rows);
 }
 
-TEST(VolumesFile, ReturnsEveryValueItWasGivenWithoutAnyPrimitive) {
+TEST(VolumesFile, ReturnsEveryValueInPlaceWithoutAnyPrimitive) {
     for (const std::uint32_t bits : {8u, 16u}) {
         const Asset asset = tests::make_volume_asset(bits);
-        AlignedBytes stored(encode(asset));
-        const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-        ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
-        const AssetView& view = loaded->view;
+        StoredAsset stored(asset);
+        const AssetView& view = stored.view();
+        const VolumesView& volumes = view.volumes;
         EXPECT_EQ(view.cubemap_size, 8u);
         EXPECT_TRUE(view.primitives.empty() && view.position.empty() && view.index.empty());
         EXPECT_EQ(view.transport.rows(), 0u);
-        expect_same_volumes(view.volumes, asset.volumes.view());
-        EXPECT_EQ(loaded->sections.back().id, kVoluSection);
-        EXPECT_EQ(loaded->sections.back().version, 1u);
+        expect_same_volumes(volumes, asset.volumes.view());
+        EXPECT_TRUE(stored.holds(volumes.records) && stored.holds(volumes.density));
+        EXPECT_TRUE(stored.holds(volumes.corner) && stored.holds(volumes.phase));
+        EXPECT_TRUE(bits == 16 || stored.holds(volumes.rows.code8));
+        EXPECT_EQ(stored.version_of(kVoluSection), 1u);
+        EXPECT_EQ(opal_size(asset.view()), stored.stored.bytes().size());
     }
 }
 
 TEST(VolumesFile, StandsBesidePrimitivesAndIsAbsentWithoutVolumes) {
     Asset asset = tests::make_small_asset();
-    const std::vector<std::byte> without = encode(asset);
+    const StoredAsset surface(asset);
+    EXPECT_TRUE(surface.view().volumes.empty());
+    EXPECT_EQ(surface.version_of(kVoluSection), 0u);
     tests::add_volume(asset, {.single_terms = 0, .multiple_terms = 9});
     tests::add_volume(asset, {.spacing = 8, .single_terms = 0, .multiple_terms = 0});
     tests::add_volume(asset, {.spacing = 1, .single_terms = 25, .multiple_terms = 0});
-    AlignedBytes stored(encode(asset));
-    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
-    expect_same_volumes(loaded->view.volumes, asset.volumes.view());
-    EXPECT_EQ(loaded->view.primitives.size(), 2u);
-
-    AlignedBytes plain(without);
-    const auto surface = read_opal(plain.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(surface);
-    EXPECT_TRUE(surface->view.volumes.empty());
-    EXPECT_EQ(surface->sections.size() + 1, loaded->sections.size());
-    EXPECT_TRUE(std::none_of(surface->sections.begin(), surface->sections.end(),
-                             [](const SectionEntry& s) { return s.id == kVoluSection; }));
+    const StoredAsset stored(asset);
+    expect_same_volumes(stored.view().volumes, asset.volumes.view());
+    EXPECT_EQ(stored.view().primitives.size(), 2u);
 }
 
 TEST(VolumesFile, RowsOfLargeCubeMapsHaveFourByteIndices) {
     Asset asset;
     asset.transport = make_sparse_rows(128, 8);
     tests::add_volume(asset, {.spacing = 8, .multiple_terms = 0, .bricks_along_x = 1});
-    AlignedBytes stored(encode(asset));
-    const auto loaded = read_opal(stored.bytes(), "a.opal", Checks::full);
-    ASSERT_TRUE(loaded) << loaded.error().diagnostics.front().fault;
-    EXPECT_GT(loaded->view.volumes.rows.index32.size(), 0u);
-    expect_same_volumes(loaded->view.volumes, asset.volumes.view());
-}
-
-TEST(VolumesFile, IsUsedInPlace) {
-    AlignedBytes stored(encode(tests::make_volume_asset()));
-    const auto loaded = read_opal(stored.bytes(), "a.opal");
-    ASSERT_TRUE(loaded);
-    const auto expect_inside = [&](auto span) {
-        const auto* at = reinterpret_cast<const std::byte*>(span.data());
-        EXPECT_GE(at, stored.bytes().data());
-        EXPECT_LE(at + span.size_bytes(), stored.bytes().data() + stored.bytes().size());
-    };
-    expect_inside(loaded->view.volumes.records);
-    expect_inside(loaded->view.volumes.density);
-    expect_inside(loaded->view.volumes.corner);
-    expect_inside(loaded->view.volumes.phase);
-    expect_inside(loaded->view.volumes.rows.code8);
-}
-
-TEST(VolumesFile, SizeIsKnownBeforeItIsWritten) {
-    const Asset asset = tests::make_volume_asset();
-    EXPECT_EQ(opal_size(asset.view()), encode(asset).size());
+    const StoredAsset stored(asset);
+    EXPECT_GT(stored.view().volumes.rows.index32.size(), 0u);
+    expect_same_volumes(stored.view().volumes, asset.volumes.view());
 }
 
 // The fault of the asset of the fixture after a change, under the checks given.
 template <class Change>
 std::string fault_of(Checks checks, Change change) {
-    Asset asset = tests::make_volume_asset();
-    change(asset.volumes);
-    return tests::fault_of(asset, checks);
+    return tests::fault_after(
+        tests::make_volume_asset(), [&](Asset& asset) { change(asset.volumes); }, checks);
 }
 
 template <class Change>
@@ -128,6 +88,11 @@ template <class Change>
 std::string value_fault(Change change) {
     EXPECT_EQ(structure_fault(change), "");
     return fault_of(Checks::full, change);
+}
+
+template <class Change>
+void expect_volume_fault(const char* what, Change change) {
+    EXPECT_THAT(structure_fault(change), HasSubstr(what));
 }
 
 TEST(VolumesFile, ImpossibleRecordsAreRefusedByName) {
@@ -153,14 +118,12 @@ TEST(VolumesFile, ImpossibleRecordsAreRefusedByName) {
 }
 
 TEST(VolumesFile, MatricesWithoutAnInverseAreRefused) {
-    const auto expect_refused = [](auto change) {
-        EXPECT_THAT(structure_fault(change), HasSubstr("cannot be inverted"));
-    };
-    expect_refused([](Volumes& v) { v.records[0].to_world = {}; });
-    expect_refused([](Volumes& v) { v.records[0].to_world[3] = kNan; });
-    expect_refused([](Volumes& v) { v.records[0].to_world[0] = kInfinity; });
-    expect_refused(
-        [](Volumes& v) { v.records[0].to_world = {1, 2, 3, 0, 2, 4, 6, 0, 1, 1, 1, 0}; });
+    const char* const singular = "cannot be inverted";
+    expect_volume_fault(singular, [](Volumes& v) { v.records[0].to_world = {}; });
+    expect_volume_fault(singular, [](Volumes& v) { v.records[0].to_world[3] = kNan; });
+    expect_volume_fault(singular, [](Volumes& v) { v.records[0].to_world[0] = kInfinity; });
+    expect_volume_fault(
+        singular, [](Volumes& v) { v.records[0].to_world = {1, 2, 3, 0, 2, 4, 6, 0, 1, 1, 1, 0}; });
     EXPECT_EQ(structure_fault([](Volumes& v) {
                   v.records[0].to_world = {1e-12f, 0, 0, 0, 0, 1e-12f, 0, 0, 0, 0, 1e-12f, 0};
               }),
@@ -168,26 +131,23 @@ TEST(VolumesFile, MatricesWithoutAnInverseAreRefused) {
 }
 
 TEST(VolumesFile, RangesBeyondTheirArraysAreRefused) {
-    const auto expect_refused = [](const char* what, auto change) {
-        EXPECT_THAT(structure_fault(change), HasSubstr(what));
-    };
     const char* const ranges = "its table, bricks, corners or nodes lie outside";
     const char* const rows = "its rows or codes lie outside";
-    expect_refused("larger than all tables", [](Volumes& v) {
+    expect_volume_fault("larger than all tables", [](Volumes& v) {
         v.records[0].extent = {1u << 21, 1u << 21, 1u << 22};  // their product is 0 in 64 bits
         v.records[0].first_brick = {};
     });
-    expect_refused(ranges, [](Volumes& v) { v.records[1].first_cell = 4; });
-    expect_refused(ranges, [](Volumes& v) { v.records[1].first_cell = UINT64_MAX; });
-    expect_refused(ranges, [](Volumes& v) { v.records[1].first_brick_number = 3; });
-    expect_refused(ranges, [](Volumes& v) { v.records[1].brick_count = 0xffffffffu; });
-    expect_refused(ranges, [](Volumes& v) { v.records[1].first_corner += 1; });
-    expect_refused(ranges, [](Volumes& v) { v.records[1].first_node += 1; });
-    expect_refused(ranges, [](Volumes& v) { v.records[1].node_count += 1; });
-    expect_refused(rows, [](Volumes& v) { v.records[1].first_row += 1; });
-    expect_refused(rows, [](Volumes& v) { v.records[1].first_band_row += 1; });
-    expect_refused(rows, [](Volumes& v) { v.records[1].first_code += 1; });
-    expect_refused(rows, [](Volumes& v) { v.records[1].multiple_terms = 1; });
+    expect_volume_fault(ranges, [](Volumes& v) { v.records[1].first_cell = 4; });
+    expect_volume_fault(ranges, [](Volumes& v) { v.records[1].first_cell = UINT64_MAX; });
+    expect_volume_fault(ranges, [](Volumes& v) { v.records[1].first_brick_number = 3; });
+    expect_volume_fault(ranges, [](Volumes& v) { v.records[1].brick_count = 0xffffffffu; });
+    expect_volume_fault(ranges, [](Volumes& v) { v.records[1].first_corner += 1; });
+    expect_volume_fault(ranges, [](Volumes& v) { v.records[1].first_node += 1; });
+    expect_volume_fault(ranges, [](Volumes& v) { v.records[1].node_count += 1; });
+    expect_volume_fault(rows, [](Volumes& v) { v.records[1].first_row += 1; });
+    expect_volume_fault(rows, [](Volumes& v) { v.records[1].first_band_row += 1; });
+    expect_volume_fault(rows, [](Volumes& v) { v.records[1].first_code += 1; });
+    expect_volume_fault(rows, [](Volumes& v) { v.records[1].multiple_terms = 1; });
 }
 
 // Otherwise a small file could ask for the same work any number of times.
@@ -218,13 +178,13 @@ TEST(VolumesFile, NumbersOfBricksNodesAndCoefficientsThatAreNotThereAreRefused) 
 }
 
 TEST(VolumesFile, ArraysOfOtherSizesThanTheHeadSaysAreRefused) {
-    const auto expect_refused = [](auto change) {
-        EXPECT_THAT(structure_fault(change), HasSubstr("its counts do not agree with its size"));
-    };
-    expect_refused([](Volumes& v) { v.density.resize(v.density.size() - kBrickVoxels); });
-    expect_refused([](Volumes& v) { v.density_scale.resize(v.density_scale.size() + 64); });
-    expect_refused([](Volumes& v) { v.phase.resize(v.phase.size() - kPhaseEntries); });
-    expect_refused([](Volumes& v) { v.rows.average_scale.clear(); });
+    const char* const counts = "its counts do not agree with its size";
+    expect_volume_fault(counts,
+                        [](Volumes& v) { v.density.resize(v.density.size() - kBrickVoxels); });
+    expect_volume_fault(counts,
+                        [](Volumes& v) { v.density_scale.resize(v.density_scale.size() + 64); });
+    expect_volume_fault(counts, [](Volumes& v) { v.phase.resize(v.phase.size() - kPhaseEntries); });
+    expect_volume_fault(counts, [](Volumes& v) { v.rows.average_scale.clear(); });
 }
 
 TEST(VolumesFile, ValuesOfRecordsOutOfRangeAreRefusedByName) {
