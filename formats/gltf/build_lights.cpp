@@ -18,11 +18,6 @@ namespace {
 /// remain finite floats.
 constexpr double kMostIntensity = 1e12;
 
-Rgb to_rgb(glm::dvec3 color) {
-    const glm::vec3 c(color);
-    return {c.x, c.y, c.z};
-}
-
 /// Names that are unique, each the wanted one where it is free.
 class UniqueNames {
   public:

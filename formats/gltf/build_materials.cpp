@@ -88,19 +88,12 @@ std::string joined(const std::vector<std::string>& names) {
                                  : text;
 }
 
-float unit_factor(double value, bool& clamped) {
-    clamped = clamped || !(value >= 0.0 && value <= 1.0);
-    return static_cast<float>(value > 0.0 ? std::min(value, 1.0) : 0.0);
-}
-
 Material convert(const MaterialSource& source, const std::string& where, Report& report) {
     Material material;
     material.name = source.name;
-    bool clamped = false;
-    material.base_color = {unit_factor(source.base_color.x, clamped),
-                           unit_factor(source.base_color.y, clamped),
-                           unit_factor(source.base_color.z, clamped)};
-    if (clamped) {
+    const glm::dvec3 color(source.base_color), inside = glm::clamp(color, 0.0, 1.0);
+    material.base_color = to_rgb(inside);
+    if (inside != color) {
         report.warn(where, "baseColorFactor was outside [0, 1] and is clamped",
                     "a surface cannot reflect more light than it receives");
     }

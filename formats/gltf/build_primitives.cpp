@@ -1,6 +1,5 @@
 #include "formats/gltf/build_primitives.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 

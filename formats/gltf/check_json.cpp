@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "formats/gltf/named_object.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -25,11 +27,9 @@ constexpr std::array<std::string_view, 16> kRequirable = {
     "EXT_mesh_gpu_instancing",      "OPALINE_media"};
 
 void check_version(const Json& root, Report& report) {
-    const auto asset = root.find("asset");
-    const auto version =
-        asset != root.end() && asset->is_object() ? asset->find("version") : Json::const_iterator();
-    if (asset == root.end() || !asset->is_object() || version == asset->end() ||
-        !version->is_string()) {
+    const Json* asset = find_member(root, "asset");
+    const Json* version = asset ? find_member(*asset, "version") : nullptr;
+    if (!version || !version->is_string()) {
         report.error("asset", "asset.version is missing, expected \"2.0\"", "export as glTF 2.0");
         return;
     }
@@ -38,26 +38,25 @@ void check_version(const Json& root, Report& report) {
         report.error("asset", "asset.version is " + in_quotes(text) + ", expected 2.x",
                      "export as glTF 2.0");
     }
-    const auto minimum = asset->find("minVersion");
-    if (minimum != asset->end() &&
-        (!minimum->is_string() || minimum->get_ref<const std::string&>() != "2.0")) {
+    const Json* minimum = find_member(*asset, "minVersion");
+    if (minimum && *minimum != "2.0") {
         report.error("asset", "asset.minVersion asks for a reader newer than 2.0",
                      "export as glTF 2.0");
     }
 }
 
 void check_required_extensions(const Json& root, Report& report) {
-    const auto required = root.find("extensionsRequired");
-    if (required == root.end()) {
+    const Json* required = find_member(root, "extensionsRequired");
+    if (!required) {
         return;
     }
     if (!required->is_array()) {
-        report.error("extensionsRequired", "it is not an array");
+        report.error("extensionsRequired", "it is not an array", "");
         return;
     }
     for (const Json& entry : *required) {
         if (!entry.is_string()) {
-            report.error("extensionsRequired", "it has an entry that is not a string");
+            report.error("extensionsRequired", "it has an entry that is not a string", "");
             continue;
         }
         const auto& name = entry.get_ref<const std::string&>();
@@ -88,18 +87,14 @@ void check_whole(const Json& value, std::uint64_t limit, const std::string& wher
             where,
             std::string(key) + " is " +
                 in_quotes(value.dump(-1, ' ', true, Json::error_handler_t::replace).substr(0, 40)) +
-                ", expected a whole number from 0 to " + std::to_string(limit),
-            "export the file again");
+                ", expected a whole number from 0 to " + std::to_string(limit));
     }
 }
 
 /// Morph targets: each an object of semantics and accessors.
 void check_targets(const Json& targets, const std::string& where, Report& report) {
-    const bool good =
-        targets.is_array() && std::all_of(targets.begin(), targets.end(),
-                                          [](const Json& target) { return target.is_object(); });
-    if (!good) {
-        report.error(where, "targets is not an array of objects", kExportAgain);
+    if (!is_array_of(targets, &Json::is_object)) {
+        report.error(where, "targets is not an array of objects");
         return;
     }
     for (const Json& target : targets) {
@@ -130,11 +125,8 @@ void check_indices(const Json& value, const std::string& where, Report& report) 
         } else if (key == "targets" && where.starts_with("meshes")) {
             check_targets(member, where, report);
         } else if (key == "weights") {
-            const bool good = member.is_array() &&
-                              std::all_of(member.begin(), member.end(),
-                                          [](const Json& weight) { return weight.is_number(); });
-            if (!good) {
-                report.error(where, "weights is not an array of numbers", kExportAgain);
+            if (!is_array_of(member, &Json::is_number)) {
+                report.error(where, "weights is not an array of numbers");
             }
         } else if (key == "indices" && member.is_object()) {
             check_indices(member, where + ".sparse.indices", report);
@@ -145,7 +137,7 @@ void check_indices(const Json& value, const std::string& where, Report& report) 
         } else if ((key == "children" && where.starts_with("nodes")) ||
                    (key == "nodes" && where.starts_with("scenes"))) {
             if (!member.is_array()) {
-                report.error(where, key + " is not an array");
+                report.error(where, key + " is not an array", "");
                 continue;
             }
             for (const Json& index : member) {
@@ -159,17 +151,10 @@ void check_indices(const Json& value, const std::string& where, Report& report) 
 
 void check_number_array(const Json& object, const char* key, std::size_t length,
                         const std::string& where, Report& report) {
-    const auto found = object.find(key);
-    if (found == object.end()) {
-        return;
-    }
-    const bool good = found->is_array() && found->size() == length &&
-                      std::all_of(found->begin(), found->end(),
-                                  [](const Json& number) { return number.is_number(); });
-    if (!good) {
+    const Json* found = find_member(object, key);
+    if (found && !is_array_of(*found, &Json::is_number, length)) {
         report.error(
-            where, std::string(key) + " is not an array of " + std::to_string(length) + " numbers",
-            "export the file again");
+            where, std::string(key) + " is not an array of " + std::to_string(length) + " numbers");
     }
 }
 
@@ -202,10 +187,8 @@ bool within_json_bounds(std::string_view text, Report& report) {
             ++values;
             objects += c == '{' ? 1 : 0;
             if (++depth > kMaxJsonDepth) {
-                report.error("JSON",
-                             "it nests deeper than " + std::to_string(kMaxJsonDepth) +
-                                 " levels at byte " + std::to_string(i),
-                             "export the file again");
+                report.error("JSON", "it nests deeper than " + std::to_string(kMaxJsonDepth) +
+                                         " levels at byte " + std::to_string(i));
                 return false;
             }
         } else if (c == ']' || c == '}') {
@@ -232,13 +215,11 @@ std::optional<nlohmann::json> parse_checked_json(std::string_view text, Report& 
     try {
         root = Json::parse(text);
     } catch (const Json::exception& problem) {
-        report.error("JSON", "it cannot be parsed " + json_fault(problem.what()),
-                     "export the file again");
-        return std::nullopt;
+        return report.fail("JSON", "it cannot be parsed " + json_fault(problem.what()));
     }
     if (!root.is_object()) {
-        report.error("JSON", "the outermost value is not an object", "give a .gltf or .glb file");
-        return std::nullopt;
+        return report.fail("JSON", "the outermost value is not an object",
+                           "give a .gltf or .glb file");
     }
     check_version(root, report);
     check_required_extensions(root, report);
@@ -253,15 +234,9 @@ void check_member_types(const nlohmann::json& root, Report& report) {
         "accessors", "animations", "buffers",  "bufferViews", "images", "materials",
         "meshes",    "nodes",      "samplers", "scenes",      "skins",  "textures"};
     for (const char* name : kArrays) {
-        const auto found = root.find(name);
-        if (found == root.end()) {
-            continue;
-        }
-        const bool good =
-            found->is_array() && std::all_of(found->begin(), found->end(),
-                                             [](const Json& entry) { return entry.is_object(); });
-        if (!good) {
-            report.error(name, "it is not an array of objects", "export the file again");
+        const Json* found = find_member(root, name);
+        if (found && !is_array_of(*found, &Json::is_object)) {
+            report.error(name, "it is not an array of objects");
         }
     }
     if (report.failed()) {

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
+
+#include "formats/opal/rgb.h"
 
 namespace opaline::formats::gltf {
 
@@ -24,6 +27,15 @@ inline glm::dvec3 clamp_color(glm::dvec3 color, const char* name,
         remarks.push_back(std::string(name) + " is outside [0, 1] and is clamped");
     }
     return inside;
+}
+
+inline Rgb to_rgb(glm::dvec3 color) {
+    const glm::vec3 c(color);
+    return {c.x, c.y, c.z};
+}
+
+inline bool is_black(glm::dvec3 color) {
+    return !(std::max({color.x, color.y, color.z}) > 0.0);
 }
 
 }  // namespace opaline::formats::gltf

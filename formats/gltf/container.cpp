@@ -29,25 +29,22 @@ std::string_view as_text(std::span<const std::byte> bytes) {
 std::optional<Container> split_binary(std::span<const std::byte> bytes, Report& report) {
     const char* again = "copy or export the file again";
     if (bytes.size() < 20) {
-        report.error("binary header",
-                     "the file ends after " + std::to_string(bytes.size()) +
-                         " bytes, before its first chunk",
-                     again);
-        return std::nullopt;
+        return report.fail("binary header",
+                           "the file ends after " + std::to_string(bytes.size()) +
+                               " bytes, before its first chunk",
+                           again);
     }
     if (const std::uint32_t version = read_u32(bytes, 4); version != 2) {
-        report.error("binary header",
-                     "container version is " + std::to_string(version) + ", expected 2",
-                     "export as glTF 2.0");
-        return std::nullopt;
+        return report.fail("binary header",
+                           "container version is " + std::to_string(version) + ", expected 2",
+                           "export as glTF 2.0");
     }
     const std::size_t length = read_u32(bytes, 8);
     if (length > bytes.size() || length < 20) {
-        report.error("binary header",
-                     "the header says " + std::to_string(length) + " bytes, the file has " +
-                         std::to_string(bytes.size()),
-                     again);
-        return std::nullopt;
+        return report.fail("binary header",
+                           "the header says " + std::to_string(length) + " bytes, the file has " +
+                               std::to_string(bytes.size()),
+                           again);
     }
     if (length < bytes.size()) {
         report.warn("binary header", std::to_string(bytes.size() - length) +
@@ -58,24 +55,21 @@ std::optional<Container> split_binary(std::span<const std::byte> bytes, Report& 
     for (std::size_t at = 12; at < length;) {
         const std::string where = "chunk at byte " + std::to_string(at);
         if (length - at < 8) {
-            report.error(where, "its header is cut off", again);
-            return std::nullopt;
+            return report.fail(where, "its header is cut off", again);
         }
         const std::size_t size = read_u32(bytes, at);
         const std::uint32_t type = read_u32(bytes, at + 4);
         at += 8;
         if (size > length - at) {
-            report.error(where,
-                         "it says " + std::to_string(size) + " bytes, but only " +
-                             std::to_string(length - at) + " remain",
-                         again);
-            return std::nullopt;
+            return report.fail(where,
+                               "it says " + std::to_string(size) + " bytes, but only " +
+                                   std::to_string(length - at) + " remain",
+                               again);
         }
         const auto chunk = bytes.subspan(at, size);
         at += size;
         if (first && type != kJsonChunk) {
-            report.error(where, "the first chunk is not JSON", again);
-            return std::nullopt;
+            return report.fail(where, "the first chunk is not JSON", again);
         }
         if (first) {
             container.json = as_text(chunk);
@@ -95,14 +89,12 @@ std::optional<std::vector<std::byte>> read_whole_file(const std::filesystem::pat
     const auto status = std::filesystem::status(path, code);
     if (!std::filesystem::is_regular_file(status)) {
         const bool exists = std::filesystem::exists(status);
-        report.error(where, exists ? "it is not a regular file" : "the file cannot be found",
-                     "check the path");
-        return std::nullopt;
+        return report.fail(where, exists ? "it is not a regular file" : "the file cannot be found",
+                           "check the path");
     }
     const auto size = std::filesystem::file_size(path, code);
     if (code) {
-        report.error(where, "its size cannot be read: " + code.message());
-        return std::nullopt;
+        return report.fail(where, "its size cannot be read: " + code.message(), "");
     }
     if (size > kMaxFileBytes) {
         report.over_limit(where,
@@ -115,8 +107,7 @@ std::optional<std::vector<std::byte>> read_whole_file(const std::filesystem::pat
     std::ifstream stream(path, std::ios::binary);
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
     if (!stream || static_cast<std::uintmax_t>(stream.gcount()) != size) {
-        report.error(where, "the file cannot be read", "check its permissions");
-        return std::nullopt;
+        return report.fail(where, "the file cannot be read", "check its permissions");
     }
     return bytes;
 }
@@ -128,12 +119,12 @@ std::optional<Container> split_container(std::span<const std::byte> bytes, Repor
     const std::string_view text = as_text(bytes);
     const std::size_t start = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
     if (start == std::string_view::npos || text[start] != '{') {
-        report.error("",
-                     text.empty() ? "the file is empty"
-                                  : "this is not glTF: it starts neither with 'glTF' (binary) "
-                                    "nor with a JSON object",
-                     "give a .gltf or .glb file");
-        return std::nullopt;
+        return report.fail("",
+                           text.empty()
+                               ? "the file is empty"
+                               : "this is not glTF: it starts neither with 'glTF' (binary) "
+                                 "nor with a JSON object",
+                           "give a .gltf or .glb file");
     }
     return Container{text, std::nullopt};
 }

@@ -9,6 +9,8 @@
 #include <optional>
 #include <string>
 
+#include "formats/gltf/named_object.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -18,24 +20,17 @@ constexpr const char* kDraco = "KHR_draco_mesh_compression";
 constexpr const char* kDracoRemedy =
     "export without compression, or decompress with gltf-transform";
 
-std::optional<std::uint64_t> whole(const Json& object, const char* key) {
-    const auto found = object.find(key);
-    return found != object.end() && found->is_number_unsigned()
-               ? std::optional(found->get<std::uint64_t>())
-               : std::nullopt;
-}
-
 std::optional<Bytes> compressed_bytes(const Json& root, const Json& extension,
                                       const Resources& resources) {
-    const auto view_index = whole(extension, "bufferView");
-    const auto views = root.find("bufferViews");
-    if (!view_index || views == root.end() || *view_index >= views->size()) {
+    const auto view_index = whole_in(extension, "bufferView");
+    const Json* views = find_member(root, "bufferViews");
+    if (!view_index || !views || *view_index >= views->size()) {
         return std::nullopt;
     }
     const Json& view = (*views)[*view_index];
-    const auto buffer = whole(view, "buffer");
-    const auto length = whole(view, "byteLength");
-    const std::uint64_t offset = whole(view, "byteOffset").value_or(0);
+    const auto buffer = whole_in(view, "buffer");
+    const auto length = whole_in(view, "byteLength");
+    const std::uint64_t offset = whole_in(view, "byteOffset").value_or(0);
     if (!buffer || *buffer >= resources.buffers.size() || !length) {
         return std::nullopt;
     }
@@ -131,9 +126,7 @@ bool attribute_bytes(const draco::PointAttribute& attribute, std::uint32_t point
 }
 
 std::uint32_t component_count(const Json& accessor) {
-    const auto type = accessor.find("type");
-    if (type == accessor.end() || !type->is_string()) return 0;
-    const auto& name = type->get_ref<const std::string&>();
+    const std::string name = name_in(accessor, "type");
     return name == "SCALAR" ? 1u
            : name == "VEC2" ? 2u
            : name == "VEC3" ? 3u
@@ -144,7 +137,7 @@ std::uint32_t component_count(const Json& accessor) {
 /// Consistency of the decoded mesh with the accessor that describes one of its attributes.
 std::string add_attribute(Json& root, Resources& resources, const draco::Mesh& mesh,
                           const std::string& semantic, const Json& id, Json& primitive) {
-    const auto accessor_index = whole(primitive["attributes"], semantic.c_str());
+    const auto accessor_index = whole_in(primitive["attributes"], semantic.c_str());
     if (!id.is_number_unsigned() || id.get<std::uint64_t>() > 0xffffffffu || !accessor_index ||
         !root.contains("accessors") || *accessor_index >= root["accessors"].size()) {
         return "attribute " + in_quotes(semantic) + " has no valid id and accessor";
@@ -156,7 +149,7 @@ std::string add_attribute(Json& root, Resources& resources, const draco::Mesh& m
         return "attribute " + in_quotes(semantic) + " is not in the compressed data as declared";
     }
     const std::uint32_t points = mesh.num_points();
-    if (whole(accessor, "count") != points) {
+    if (whole_in(accessor, "count") != points) {
         return "attribute " + in_quotes(semantic) + " has " + std::to_string(points) +
                " decoded values, its accessor says otherwise";
     }
@@ -166,7 +159,7 @@ std::string add_attribute(Json& root, Resources& resources, const draco::Mesh& m
         }
     }
     std::vector<std::byte> bytes;
-    if (!attribute_bytes(*attribute, points, whole(accessor, "componentType").value_or(0),
+    if (!attribute_bytes(*attribute, points, whole_in(accessor, "componentType").value_or(0),
                          components, bytes)) {
         return "attribute " + in_quotes(semantic) + " cannot be converted to its component type";
     }
@@ -190,11 +183,10 @@ std::size_t add_indices(Json& root, Resources& resources, const draco::Mesh& mes
 /// Empty, or what is wrong.
 std::string decode_primitive(Json& root, Resources& resources, const Json& extension,
                              Json& primitive) {
-    const auto ids = extension.is_object() ? extension.find("attributes") : extension.end();
-    const auto bytes =
-        extension.is_object() ? compressed_bytes(root, extension, resources) : std::nullopt;
-    if (!bytes || ids == extension.end() || !ids->is_object() ||
-        !primitive.contains("attributes") || !primitive["attributes"].is_object()) {
+    const Json* ids = find_member(extension, "attributes");
+    const auto bytes = compressed_bytes(root, extension, resources);
+    const Json* attributes = find_member(primitive, "attributes");
+    if (!bytes || !ids || !ids->is_object() || !attributes || !attributes->is_object()) {
         return "its bufferView or attributes are missing or out of range";
     }
     if (std::string fault = header_fault(*bytes); !fault.empty()) {
@@ -226,21 +218,21 @@ std::string decode_primitive(Json& root, Resources& resources, const Json& exten
 }  // namespace
 
 void decode_draco_primitives(nlohmann::json& root, Resources& resources, Report& report) {
-    const auto meshes = root.find("meshes");
-    if (meshes == root.end()) {
+    const Json* meshes = find_member(root, "meshes");
+    if (!meshes) {
         return;
     }
     for (std::size_t m = 0; m < meshes->size(); ++m) {
         // `root` grows below, so nothing may hold on to a part of it meanwhile.
-        const std::size_t count =
-            root["meshes"][m].contains("primitives") ? root["meshes"][m]["primitives"].size() : 0;
+        const Json* primitives = find_member(root["meshes"][m], "primitives");
+        const std::size_t count = primitives ? primitives->size() : 0;
         for (std::size_t p = 0; p < count; ++p) {
             Json primitive = root["meshes"][m]["primitives"][p];
-            if (!primitive.is_object() || !primitive.contains("extensions") ||
-                !primitive["extensions"].is_object() || !primitive["extensions"].contains(kDraco)) {
+            const Json* found = find_extension(primitive, kDraco);
+            if (!found) {
                 continue;
             }
-            const Json extension = primitive["extensions"][kDraco];
+            const Json extension = *found;
             const std::string fault = decode_primitive(root, resources, extension, primitive);
             if (!fault.empty()) {
                 report.error("mesh " + std::to_string(m) + " > primitive " + std::to_string(p) +

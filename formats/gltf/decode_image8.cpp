@@ -8,7 +8,6 @@
 // clang-format on
 #include <png.h>
 
-#include <algorithm>
 #include <array>
 #include <csetjmp>
 #include <cstring>

@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 
+#include "formats/gltf/named_object.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -23,31 +25,16 @@ struct Compressed {
     std::string mode, filter;
 };
 
-std::optional<std::uint64_t> whole(const Json& object, const char* key,
-                                   std::optional<std::uint64_t> otherwise) {
-    const auto found = object.find(key);
-    if (found == object.end()) {
-        return otherwise;
-    }
-    return found->is_number_unsigned() ? std::optional(found->get<std::uint64_t>()) : std::nullopt;
-}
-
-std::string text(const Json& object, const char* key, const char* otherwise) {
-    const auto found = object.find(key);
-    return found != object.end() && found->is_string() ? found->get<std::string>() : otherwise;
-}
-
 /// Empty where the description is sound.
 std::string read_description(const Json& extension, const std::vector<Bytes>& buffers,
                              Compressed& out) {
     if (!extension.is_object()) {
         return "it is not an object";
     }
-    const auto buffer = whole(extension, "buffer", std::nullopt);
-    const auto offset = whole(extension, "byteOffset", 0);
-    const auto length = whole(extension, "byteLength", std::nullopt);
-    const auto stride = whole(extension, "byteStride", std::nullopt);
-    const auto count = whole(extension, "count", std::nullopt);
+    const auto buffer = whole_in(extension, "buffer"), length = whole_in(extension, "byteLength"),
+               stride = whole_in(extension, "byteStride"), count = whole_in(extension, "count"),
+               offset = extension.contains("byteOffset") ? whole_in(extension, "byteOffset")
+                                                         : std::optional<std::uint64_t>(0);
     if (!buffer || !offset || !length || !stride || !count) {
         return "buffer, byteOffset, byteLength, byteStride or count is missing or no whole number";
     }
@@ -58,8 +45,8 @@ std::string read_description(const Json& extension, const std::vector<Bytes>& bu
     out.bytes = buffers[*buffer].subspan(*offset, *length);
     out.stride = *stride;
     out.count = *count;
-    out.mode = text(extension, "mode", "");
-    out.filter = text(extension, "filter", "NONE");
+    out.mode = name_in(extension, "mode");
+    out.filter = name_in(extension, "filter");
     if (out.count == 0 || out.count > kMaxTotalBytes) {
         return "count is " + std::to_string(out.count);
     }
@@ -71,7 +58,7 @@ std::string read_description(const Json& extension, const std::vector<Bytes>& bu
         if (out.count * out.stride / 64 > out.bytes.size() + 1024) {
             return "count is too large for its compressed bytes";
         }
-        const bool sound = out.filter == "NONE" ||
+        const bool sound = out.filter.empty() || out.filter == "NONE" ||
                            (out.filter == "OCTAHEDRAL" && (out.stride == 4 || out.stride == 8)) ||
                            (out.filter == "QUATERNION" && out.stride == 8) ||
                            out.filter == "EXPONENTIAL";
@@ -125,15 +112,13 @@ void decode_meshopt_views(nlohmann::json& root, Resources& resources, Report& re
     }
     for (std::size_t i = 0; i < views->size(); ++i) {
         Json& view = (*views)[i];
-        const auto extensions = view.find("extensions");
-        if (extensions == view.end() || !extensions->is_object() ||
-            !extensions->contains(kMeshopt)) {
+        const Json* extension = find_extension(view, kMeshopt);
+        if (!extension) {
             continue;
         }
         const std::string where = "bufferView " + std::to_string(i) + " > " + kMeshopt;
         Compressed compressed;
-        const std::string fault =
-            read_description((*extensions)[kMeshopt], resources.buffers, compressed);
+        const std::string fault = read_description(*extension, resources.buffers, compressed);
         if (!fault.empty()) {
             report.error(where, fault, kMeshoptRemedy);
             continue;
@@ -154,7 +139,7 @@ void decode_meshopt_views(nlohmann::json& root, Resources& resources, Report& re
         view["buffer"] = resources.buffers.size();
         view["byteOffset"] = 0u;
         view["byteLength"] = size;
-        extensions->erase(kMeshopt);
+        view["extensions"].erase(kMeshopt);
         resources.buffers.push_back(resources.keep(std::move(decoded)));
     }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <new>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "formats/gltf/container.h"
 #include "formats/gltf/decode_draco.h"
 #include "formats/gltf/decode_meshopt.h"
+#include "formats/gltf/named_object.h"
 #include "formats/gltf/parse_document.h"
 #include "formats/gltf/resources.h"
 #include "formats/gltf/validate_document.h"
@@ -26,12 +26,8 @@ namespace {
 using namespace gltf;
 
 std::string media_text(const nlohmann::json& root) {
-    const auto extensions = root.find("extensions");
-    if (extensions == root.end() || !extensions->is_object()) {
-        return {};
-    }
-    const auto media = extensions->find("OPALINE_media");
-    return media == extensions->end() ? std::string() : media->dump();
+    const nlohmann::json* media = find_extension(root, "OPALINE_media");
+    return media ? media->dump() : std::string();
 }
 
 /// The whole import; every fault is in `report`, and the scene counts only if there is none.
@@ -127,17 +123,9 @@ Result<ImportedScene> import_gltf(const std::filesystem::path& path, const Impor
         }
         return ImportedScene{std::move(scene), report.take_warnings(), std::move(media),
                              std::move(report.notes)};
-    } catch (const std::bad_alloc&) {
-        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
-                          "split or simplify the scene");
-    } catch (const std::length_error&) {
-        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
-                          "split or simplify the scene");
-    } catch (const std::exception& problem) {
+    } catch (const std::exception&) {
         // The libraries behind throw on some malformed input that no check of ours names.
-        return make_error(ErrorKind::bad_input, report.file, "",
-                          "it cannot be read: " + json_fault(problem.what()),
-                          "export the file again");
+        return report.take_exception("split or simplify the scene", kExportAgain);
     }
 }
 

@@ -26,24 +26,19 @@ std::vector<float> read(const Document& document, const std::vector<Bytes>& buff
     const bool whole = accessor.type != ComponentType::float32;
     if (accessor.is_matrix || accessor.components != components ||
         (whole && !accessor.normalized && components == 4)) {
-        report.error(where,
-                     std::string(semantic) + " has not " + std::to_string(components) +
-                         " floats or normalised integers per instance",
-                     kExportAgain);
+        report.error(where, std::string(semantic) + " has not " + std::to_string(components) +
+                                " floats or normalised integers per instance");
         return {};
     }
     auto values = read_floats(document, buffers, found->second);
     if (values.sparse_index_bad) {
-        report.error(where, std::string(semantic) + " has a sparse index past its last element",
-                     kExportAgain);
+        report.error(where, std::string(semantic) + " has a sparse index past its last element");
         return {};
     }
     for (std::size_t i = 0; i < values.value.size(); ++i) {
         if (!std::isfinite(values.value[i])) {
-            report.error(where,
-                         std::string(semantic) + " of instance " + std::to_string(i / components) +
-                             " is not finite",
-                         kExportAgain);
+            report.error(where, std::string(semantic) + " of instance " +
+                                    std::to_string(i / components) + " is not finite");
             return {};
         }
     }
@@ -52,37 +47,24 @@ std::vector<float> read(const Document& document, const std::vector<Bytes>& buff
 
 }  // namespace
 
-std::vector<Attributes> read_node_instances(const Json& root, Report& report) {
-    std::vector<Attributes> all;
-    const auto nodes = root.find("nodes");
-    if (nodes == root.end()) {
-        return all;
+Attributes read_instances(const NamedObject& node) {
+    Attributes instances;
+    const auto extension = node.extensions().member(kInstancing);
+    const auto attributes = extension ? extension->member("attributes") : std::nullopt;
+    if (extension && !attributes) {
+        node.report.error(extension->where, "it has no attributes");
     }
-    all.resize(nodes->size());
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const Json& node = (*nodes)[i];
-        const auto extensions = node.find("extensions");
-        if (extensions == node.end() || !extensions->is_object() ||
-            !extensions->contains(kInstancing)) {
-            continue;
-        }
-        const Json& extension = (*extensions)[kInstancing];
-        const std::string where = "node " + std::to_string(i) + " > " + kInstancing;
-        const auto attributes =
-            extension.is_object() ? extension.find("attributes") : extension.end();
-        if (!extension.is_object() || attributes == extension.end() || !attributes->is_object()) {
-            report.error(where, "it has no attributes", kExportAgain);
-            continue;
-        }
-        for (const auto& [semantic, accessor] : attributes->items()) {
-            if (!accessor.is_number_unsigned() || accessor.get<std::uint64_t>() >= kNone) {
-                report.error(where, in_quotes(semantic) + " is not an accessor", kExportAgain);
-                continue;
-            }
-            all[i].emplace(semantic, accessor.get<std::uint32_t>());
+    if (!attributes) {
+        return instances;
+    }
+    for (const auto& [semantic, accessor] : attributes->object.items()) {
+        if (const auto index = whole_in(attributes->object, semantic.c_str(), kNone - 1)) {
+            instances.emplace(semantic, static_cast<std::uint32_t>(*index));
+        } else {
+            node.report.error(extension->where, in_quotes(semantic) + " is not an accessor");
         }
     }
-    return all;
+    return instances;
 }
 
 std::uint64_t instance_count(const Document& document, const Node& node) {
@@ -104,14 +86,14 @@ std::vector<glm::dmat4> instance_transforms(const Document& document,
             return {};
         }
     }
-    const std::size_t faults = report.errors.size() + report.errors_left_out;
+    const std::size_t faults = report.error_count();
     const auto values = [&](const char* semantic, std::uint32_t components) {
         return read(document, buffers, node, semantic, components, where + " > " + kInstancing,
                     report);
     };
     const std::vector<float> translation = values("TRANSLATION", 3),
                              rotation = values("ROTATION", 4), scale = values("SCALE", 3);
-    if (report.errors.size() + report.errors_left_out != faults) {
+    if (report.error_count() != faults) {
         return {};
     }
     std::vector<glm::dmat4> places(count, glm::dmat4(1.0));
@@ -122,10 +104,8 @@ std::vector<glm::dmat4> instance_transforms(const Document& document,
             const glm::dquat turn(q[3], q[0], q[1], q[2]);
             const double length = glm::length(turn);
             if (!(length > 1e-6)) {
-                report.error(where,
-                             std::string(kInstancing) + ": ROTATION of instance " +
-                                 std::to_string(i) + " is not a unit quaternion",
-                             kExportAgain);
+                report.error(where, std::string(kInstancing) + ": ROTATION of instance " +
+                                        std::to_string(i) + " is not a unit quaternion");
                 return {};
             }
             place = glm::mat4_cast(turn / length);

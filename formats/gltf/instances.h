@@ -1,18 +1,17 @@
 #pragma once
 
 #include <glm/glm.hpp>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
 #include "formats/gltf/document.h"
-#include "formats/gltf/report.h"
+#include "formats/gltf/named_object.h"
 #include "formats/gltf/resources.h"
 
 namespace opaline::formats::gltf {
 
-/// EXT_mesh_gpu_instancing of every node; empty where a node does not have it.
-std::vector<Attributes> read_node_instances(const nlohmann::json& root, Report& report);
+/// EXT_mesh_gpu_instancing of a node; empty where it does not have it.
+Attributes read_instances(const NamedObject& node);
 
 /// Number of places of a node's mesh: as many as its attributes have values, or one.
 std::uint64_t instance_count(const Document& document, const Node& node);

@@ -1,8 +1,10 @@
 #include "formats/gltf/load_texture.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "formats/gltf/decode_image8.h"
+#include "formats/image/srgb.h"
 
 namespace opaline::formats::gltf {
 
@@ -18,8 +20,7 @@ TextureWrap wrap_mode(std::uint32_t value, const std::string& where, Report& rep
             return TextureWrap::mirror;
         default:
             report.error(
-                where, "wrap mode " + std::to_string(value) + " is none of 10497, 33071 and 33648",
-                "export the file again");
+                where, "wrap mode " + std::to_string(value) + " is none of 10497, 33071 and 33648");
             return TextureWrap::repeat;
     }
 }
@@ -37,6 +38,24 @@ bool is_nearest_sampler(const Sampler& sampler) {
 }
 
 }  // namespace
+
+std::array<double, 256> decoded_codes() {
+    std::array<double, 256> linear{};
+    for (std::size_t code = 0; code < linear.size(); ++code) {
+        linear[code] = static_cast<double>(linear_from_srgb(static_cast<float>(code) / 255.0f));
+    }
+    return linear;
+}
+
+glm::dvec4 mean_texel(const Image8& image) {
+    const std::array<double, 256> linear = decoded_codes();
+    glm::dvec4 sum(0.0);
+    for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
+        sum += glm::dvec4(linear[image.rgba[i]], linear[image.rgba[i + 1]],
+                          linear[image.rgba[i + 2]], image.rgba[i + 3] / 255.0);
+    }
+    return sum / static_cast<double>(std::max<std::size_t>(1, image.rgba.size() / 4));
+}
 
 std::optional<Image8> TextureLoader::decode_image(std::uint32_t index) {
     const ImageSource& source = document_.images[index];

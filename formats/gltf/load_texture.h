@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <map>
 #include <optional>
 #include <string>
@@ -18,6 +20,11 @@ struct LoadedTexture {
     std::uint32_t image = kNone;
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
 };
+
+/// Linear values of sRGB codes.
+std::array<double, 256> decoded_codes();
+/// The linear mean of an image's colours, and of its alpha.
+glm::dvec4 mean_texel(const Image8& image);
 
 /// Decodes the images of textures, each once. Errors go to `report`. All that it is given must
 /// outlive it, and the links between them must be valid (validate_document).

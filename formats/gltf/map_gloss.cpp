@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "formats/gltf/clamp_factor.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -26,8 +28,7 @@ Rgb specular_color(glm::dvec3 color, Remarks& remarks) {
     if (inside != color) {
         remarks.push_back("specularColorFactor is out of its range and is clamped");
     }
-    return {static_cast<float>(inside.x), static_cast<float>(inside.y),
-            static_cast<float>(inside.z)};
+    return to_rgb(inside);
 }
 
 float index_of_refraction(double ior, Remarks& remarks) {

@@ -1,7 +1,6 @@
 #include "formats/gltf/map_medium.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,10 +13,6 @@ namespace {
 using Remarks = std::vector<std::string>;
 
 constexpr double kMaxAnisotropy = 0.99, kMinEta = 1.0 / 3.0, kMaxEta = 3.0;
-
-bool is_black(glm::dvec3 color) {
-    return !(std::max({color.x, color.y, color.z}) > 0.0);
-}
 
 constexpr const char* kNoDistance =
     "attenuationDistance is not above 0, which makes the medium infinitely dense: the surface is "
@@ -106,6 +101,13 @@ void remark_losses(const TranslucencySource& source, Remarks& remarks) {
     }
 }
 
+void finish_surface(const TranslucencySource& source, Medium& medium, Remarks& remarks) {
+    medium.eta = static_cast<float>(boundary_eta(source, remarks));
+    medium.roughness =
+        static_cast<float>(clamp_factor(source.roughness, 0.0, 1.0, "roughnessFactor", remarks));
+    remark_losses(source, remarks);
+}
+
 /// Absorption alone, or nothing inside; nothing where the surface lets no light in.
 std::optional<Medium> map_glass(const TranslucencySource& source, double metres_per_unit,
                                 Remarks& remarks) {
@@ -128,10 +130,7 @@ std::optional<Medium> map_glass(const TranslucencySource& source, double metres_
     Medium medium;
     medium.sigma_s = {0, 0, 0};
     medium.sigma_a = {absorption(kept.x), absorption(kept.y), absorption(kept.z)};
-    medium.eta = static_cast<float>(boundary_eta(source, remarks));
-    medium.roughness =
-        static_cast<float>(clamp_factor(source.roughness, 0.0, 1.0, "roughnessFactor", remarks));
-    remark_losses(source, remarks);
+    finish_surface(source, medium, remarks);
     return medium;
 }
 
@@ -166,7 +165,7 @@ std::optional<Medium> map_medium(const TranslucencySource& source, double metres
         clamp_color(source.multiscatter_color, "the multiscatter colour", remarks);
     const glm::dvec3 kept = clamp_color(source.attenuation_color, "attenuationColor", remarks);
     const double metres = source.attenuation_distance * metres_per_unit;
-    std::array<float, 3> scattering{}, absorption{};
+    glm::dvec3 scattering, absorption;
     double greatest = 0.0;
     for (int band = 0; band < 3; ++band) {
         constexpr double kTiny =
@@ -175,9 +174,8 @@ std::optional<Medium> map_medium(const TranslucencySource& source, double metres
         const double albedo =
             single_scattering_albedo(strength * color[band], source.has_scatter ? g : 0.0);
         greatest = std::max(greatest, sigma_t);
-        const auto i = static_cast<std::size_t>(band);
-        scattering[i] = static_cast<float>(sigma_t * albedo);
-        absorption[i] = static_cast<float>(sigma_t * (1.0 - albedo));
+        scattering[band] = sigma_t * albedo;
+        absorption[band] = sigma_t * (1.0 - albedo);
     }
     constexpr double kDensest = 1e15,
                      kThinnest = 1e-15;  // [1/m]: single precision keeps its products
@@ -188,16 +186,13 @@ std::optional<Medium> map_medium(const TranslucencySource& source, double metres
         return std::nullopt;
     }
     Medium medium;
-    medium.sigma_s = {scattering[0], scattering[1], scattering[2]};
-    medium.sigma_a = {absorption[0], absorption[1], absorption[2]};
+    medium.sigma_s = to_rgb(scattering);
+    medium.sigma_a = to_rgb(absorption);
     if (g != 0.0) {
         medium.phase.type = PhaseFunction::Type::henyey_greenstein;
         medium.phase.g = static_cast<float>(g);
     }
-    medium.eta = static_cast<float>(boundary_eta(source, remarks));
-    medium.roughness =
-        static_cast<float>(clamp_factor(source.roughness, 0.0, 1.0, "roughnessFactor", remarks));
-    remark_losses(source, remarks);
+    finish_surface(source, medium, remarks);
     return medium;
 }
 

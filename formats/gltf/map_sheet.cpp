@@ -17,15 +17,11 @@ struct Sides {
     double clear = 0;
 };
 
-bool scatters_no_light(glm::dvec3 color) {
-    return !(std::max({color.x, color.y, color.z}) > 0.0);
-}
-
 std::optional<Sides> scatter(const TranslucencySource& source, glm::dvec3 base,
                              std::vector<std::string>& remarks) {
     const bool scatters = source.has_volume_scatter ||
                           (source.has_scatter && source.scatter_strength.value_or(0.0) > 0.0);
-    if (!scatters || !(source.transmission > 0.0) || scatters_no_light(source.multiscatter_color)) {
+    if (!scatters || !(source.transmission > 0.0) || is_black(source.multiscatter_color)) {
         return std::nullopt;
     }
     const double strength = source.has_scatter ? clamp_factor(*source.scatter_strength, 0.0, 1.0,
@@ -104,9 +100,7 @@ void make_glass(const TranslucencySource& source, glm::dvec3 base, Sides& sides,
     const double smooth = (1 - roughness) * (1 - roughness) * sides.clear;
     const double straight = (1 - metallic) * smooth;
     sides.transmitted += (sides.clear - smooth) * base;
-    const Rgb tint{static_cast<float>(base.x), static_cast<float>(base.y),
-                   static_cast<float>(base.z)};
-    const double passes = straight * static_cast<double>(luminance(tint));
+    const double passes = straight * static_cast<double>(luminance(to_rgb(base)));
     const double ior = source.ior == 0.0 ? 0.0 : std::max(source.ior, 1.0);
     to.sheet.eta = static_cast<float>(std::min(ior, 1e4));
     to.sheet.clear = static_cast<float>(passes);
@@ -170,11 +164,9 @@ std::optional<MappedSheet> map_sheet(const TranslucencySource& source, Rgb base_
     }
     const glm::dvec3 larger = glm::max(sides->reflected, sides->transmitted);
     const auto share = [&](glm::dvec3 part) {
-        const glm::dvec3 s = part / glm::max(larger, glm::dvec3(1e-30));
-        return Rgb{static_cast<float>(s.x), static_cast<float>(s.y), static_cast<float>(s.z)};
+        return to_rgb(part / glm::max(larger, glm::dvec3(1e-30)));
     };
-    mapped.base_color = {static_cast<float>(larger.x), static_cast<float>(larger.y),
-                         static_cast<float>(larger.z)};
+    mapped.base_color = to_rgb(larger);
     mapped.sheet.reflect = share(sides->reflected);
     mapped.sheet.transmit = share(sides->transmitted);
     return mapped;

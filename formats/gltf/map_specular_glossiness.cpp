@@ -49,14 +49,6 @@ MetallicRoughness convert_texel(glm::dvec3 diffuse, glm::dvec3 specular) {
     return {glm::clamp(glm::mix(of_diffuse, of_specular, metallic * metallic), 0.0, 1.0), metallic};
 }
 
-std::array<double, 256> decoded_codes() {
-    std::array<double, 256> linear{};
-    for (std::size_t code = 0; code < linear.size(); ++code) {
-        linear[code] = static_cast<double>(linear_from_srgb(static_cast<float>(code) / 255.0f));
-    }
-    return linear;
-}
-
 std::uint8_t to_code(double value) {
     return static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
 }
@@ -73,21 +65,10 @@ std::array<std::uint8_t, 4> texel_at(const std::optional<Image8>& image, std::ui
     return {code[0], code[1], code[2], code[3]};
 }
 
-float to_float(double value) {
-    return static_cast<float>(value);
-}
-
 void apply_mean_specular(const Image8& image, double glossiness, Gloss& gloss) {
-    const std::array<double, 256> linear = decoded_codes();
-    glm::dvec4 sum(0.0);
-    for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
-        sum += glm::dvec4(linear[image.rgba[i]], linear[image.rgba[i + 1]],
-                          linear[image.rgba[i + 2]], image.rgba[i + 3] / 255.0);
-    }
-    sum /= static_cast<double>(std::max<std::size_t>(1, image.rgba.size() / 4));
-    gloss.specular_color =
-        gloss.specular_color * Rgb{to_float(sum.x), to_float(sum.y), to_float(sum.z)};
-    gloss.roughness = to_float(1 - glossiness * sum.w);
+    const glm::dvec4 mean = mean_texel(image);
+    gloss.specular_color = gloss.specular_color * to_rgb(mean);
+    gloss.roughness = static_cast<float>(1 - glossiness * mean.w);
 }
 
 }  // namespace

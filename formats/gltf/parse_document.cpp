@@ -20,10 +20,8 @@
 
 #include "formats/gltf/instances.h"
 #include "formats/gltf/read_lights.h"
+#include "formats/gltf/read_material.h"
 #include "formats/gltf/read_skins.h"
-#include "formats/gltf/read_specular_glossiness.h"
-#include "formats/gltf/read_texture_use.h"
-#include "formats/gltf/read_translucency.h"
 
 namespace opaline::formats::gltf {
 
@@ -64,14 +62,6 @@ void drop_extras(Json& value) {
             drop_extras(member);
         }
     }
-}
-
-std::vector<std::string> names_of(const tinygltf::ExtensionMap& extensions) {
-    std::vector<std::string> names;
-    for (const auto& [name, value] : extensions) {
-        names.push_back(name);
-    }
-    return names;
 }
 
 Accessor convert(const tinygltf::Accessor& in, int no_view) {
@@ -168,104 +158,41 @@ glm::dmat4 local_transform(const tinygltf::Node& node, const std::string& where,
     return local;
 }
 
-Node convert(const tinygltf::Node& in, std::size_t index, Report& report) {
-    Node out;
+void convert(const tinygltf::Node& in, const std::string& where, Node& out, Report& report) {
     out.name = in.name;
     out.mesh = link(in.mesh);
     for (const int child : in.children) {
         out.children.push_back(link(child));
     }
-    out.local = local_transform(in, label("node", index, in.name), report);
+    out.local = local_transform(in, where, report);
     out.skin = link(in.skin);
     out.weights = in.weights;
     out.has_camera = in.camera >= 0;
-    out.extensions = names_of(in.extensions);
-    return out;
 }
 
-double number_in(const tinygltf::Value& value, const char* key, std::size_t element,
-                 double otherwise) {
-    if (!value.IsObject() || !value.Has(key)) {
-        return otherwise;
-    }
-    const tinygltf::Value* found = &value.Get(key);
-    if (found->IsArray()) {
-        if (element >= found->ArrayLen()) {
-            return otherwise;
+/// Calls `read` with each object of one of the file's arrays.
+template <class Read>
+void for_each_in(const Json& root, const char* key, const char* kind, Report& report,
+                 const Read& read) {
+    if (const Json* found = find_member(root, key)) {
+        for (std::size_t i = 0; i < found->size(); ++i) {
+            const Json& entry = (*found)[i];
+            read(NamedObject{entry, label(kind, i, name_in(entry)), report});
         }
-        found = &found->Get(static_cast<int>(element));
     }
-    return found->IsNumber() ? found->GetNumberAsDouble() : otherwise;
-}
-
-/// Of a TextureInfo or a NormalTextureInfo.
-template <class Info>
-TextureUse convert_use(const Info& in, const std::string& where, Report& report) {
-    TextureUse out;
-    out.texture = link(in.index);
-    out.texcoord = static_cast<std::uint32_t>(in.texCoord);
-    const auto found = in.extensions.find("KHR_texture_transform");
-    if (found == in.extensions.end()) {
-        return out;
-    }
-    const tinygltf::Value& value = found->second;
-    const double angle = number_in(value, "rotation", 0, 0.0);
-    const glm::dvec2 offset(number_in(value, "offset", 0, 0.0), number_in(value, "offset", 1, 0.0));
-    const glm::dvec2 scale(number_in(value, "scale", 0, 1.0), number_in(value, "scale", 1, 1.0));
-    out.transform = texture_transform(offset, angle, scale);
-    const double texcoord = number_in(value, "texCoord", 0, out.texcoord);
-    if (!(texcoord >= 0 && texcoord <= 255 && texcoord == std::floor(texcoord))) {
-        report.error(where, "the texCoord of its KHR_texture_transform is not a small whole number",
-                     "export the file again");
-    } else {
-        out.texcoord = static_cast<std::uint32_t>(texcoord);
-    }
-    return out;
-}
-
-MaterialSource convert(const tinygltf::Material& in, std::size_t index, Report& report) {
-    MaterialSource out;
-    out.name = in.name;
-    const auto& pbr = in.pbrMetallicRoughness;
-    if (pbr.baseColorFactor.size() == 4) {
-        out.base_color = glm::make_vec4(pbr.baseColorFactor.data());
-    }
-    out.base_color_texture =
-        convert_use(pbr.baseColorTexture, label("material", index, in.name), report);
-    out.metallic_roughness_texture =
-        convert_use(pbr.metallicRoughnessTexture, label("material", index, in.name), report);
-    out.double_sided = in.doubleSided;
-    out.normal_texture = convert_use(in.normalTexture, label("material", index, in.name), report);
-    out.normal_scale = in.normalTexture.scale;
-    out.has_occlusion_map = in.occlusionTexture.index >= 0;
-    out.alpha_mode = in.alphaMode.empty() ? "OPAQUE" : in.alphaMode;
-    out.alpha_cutoff = in.alphaCutoff;
-    out.extensions = names_of(in.extensions);
-    return out;
 }
 
 std::vector<ImageSource> read_images(const Json& root, Report& report) {
     std::vector<ImageSource> images;
-    const auto found = root.find("images");
-    if (found == root.end()) {
-        return images;
-    }
-    for (const Json& entry : *found) {
+    for_each_in(root, "images", "image", report, [&](const NamedObject& entry) {
         ImageSource& image = images.emplace_back();
-        const auto text = [&](const char* key) -> std::string {
-            const auto member = entry.find(key);
-            return member != entry.end() && member->is_string() ? member->get<std::string>() : "";
-        };
-        image.name = text("name");
-        image.uri = text("uri");
-        if (const auto view = entry.find("bufferView"); view != entry.end()) {
-            image.view = view->get<std::uint32_t>();
-        }
+        image.name = name_in(entry.object);
+        image.uri = name_in(entry.object, "uri");
+        image.view = entry.object.value("bufferView", kNone);
         if (image.uri.empty() == (image.view == kNone)) {
-            report.error(label("image", images.size() - 1, image.name),
-                         "it needs exactly one of uri and bufferView", "export the file again");
+            report.error(entry.where, "it needs exactly one of uri and bufferView");
         }
-    }
+    });
     return images;
 }
 
@@ -277,22 +204,24 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     document.lights = read_lights(root, report);
     document.skins = read_skins(root, report);
     document.has_animations = root.contains("animations") && !root["animations"].empty();
-    if (const auto scene = root.find("scene"); scene != root.end()) {
-        document.default_scene = scene->get<std::uint32_t>();
-    }
+    document.default_scene = root.value("scene", kNone);
+    for_each_in(root, "materials", "material", report, [&](const NamedObject& material) {
+        document.materials.push_back(read_material(material));
+    });
+    for_each_in(root, "nodes", "node", report, [&](const NamedObject& node) {
+        Node& out = document.nodes.emplace_back();
+        out.extensions = node.extensions().keys();
+        out.light = read_node_light(node);
+        out.instances = read_instances(node);
+    });
     // Remove the parts that Opaline reads itself or ignores, so that tinygltf does not parse them.
-    for (const char* key :
-         {"buffers", "images", "animations", "skins", "cameras", "extensions", "extras", "scene"}) {
+    for (const char* key : {"buffers", "images", "materials", "animations", "skins", "cameras",
+                            "extensions", "extras", "scene"}) {
         root.erase(key);
     }
     drop_extras(root);
     const int no_view = give_every_accessor_a_view(root);
     const std::string text = root.dump(-1, ' ', true, Json::error_handler_t::replace);
-    const std::vector<TranslucencySource> translucency = read_translucency(root, report);
-    const std::vector<EmissionSource> emission = read_emission(root, report);
-    const auto specular_glossiness = read_specular_glossiness(root, report);
-    const std::vector<std::uint32_t> node_lights = read_node_lights(root, report);
-    std::vector<Attributes> node_instances = read_node_instances(root, report);
     root = nullptr;
 
     tinygltf::TinyGLTF reader;
@@ -300,13 +229,10 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
     std::string problems, remarks;
     if (!reader.LoadASCIIFromString(&model, &problems, &remarks, text.data(),
                                     static_cast<unsigned int>(text.size()), "", 0)) {
-        report.error("JSON", "it does not follow the glTF schema: " + in_quotes(problems),
-                     "export the file again");
-        return std::nullopt;
+        return report.fail("JSON", "it does not follow the glTF schema: " + in_quotes(problems));
     }
     if (model.bufferViews.size() != static_cast<std::size_t>(no_view) + 1) {
-        report.error("bufferViews", "they cannot be read", "export the file again");
-        return std::nullopt;
+        return report.fail("bufferViews", "they cannot be read");
     }
     model.bufferViews.pop_back();
     for (const auto& view : model.bufferViews) {
@@ -320,21 +246,14 @@ std::optional<Document> parse_document(nlohmann::json root, Report& report) {
         document.meshes.push_back(convert(mesh));
     }
     for (std::size_t i = 0; i < model.nodes.size(); ++i) {
-        document.nodes.push_back(convert(model.nodes[i], i, report));
-        document.nodes.back().light = node_lights.at(i);
-        document.nodes.back().instances = std::move(node_instances.at(i));
+        const tinygltf::Node& node = model.nodes[i];
+        convert(node, label("node", i, node.name), document.nodes.at(i), report);
     }
     for (const auto& scene : model.scenes) {
         auto& roots = document.scenes.emplace_back();
         for (const int node : scene.nodes) {
             roots.push_back(link(node));
         }
-    }
-    for (std::size_t i = 0; i < model.materials.size(); ++i) {
-        document.materials.push_back(convert(model.materials[i], i, report));
-        document.materials.back().translucency = translucency.at(i);
-        document.materials.back().emission = emission.at(i);
-        document.materials.back().specular_glossiness = specular_glossiness.at(i);
     }
     for (const auto& texture : model.textures) {
         document.textures.push_back({link(texture.source), link(texture.sampler)});

@@ -44,11 +44,9 @@ Placement place_primitive(const MeshInstance& instance, const PrimitiveData& dat
                 continue;
             }
             if (!(data.joint[i] < static_cast<float>(joints.size()))) {
-                report.error(where,
-                             "vertex " + std::to_string(v) + " is bound to joint " +
-                                 std::to_string(static_cast<std::uint64_t>(data.joint[i])) +
-                                 ", but its skin has " + std::to_string(joints.size()),
-                             kExportAgain);
+                report.error(where, "vertex " + std::to_string(v) + " is bound to joint " +
+                                        std::to_string(static_cast<std::uint64_t>(data.joint[i])) +
+                                        ", but its skin has " + std::to_string(joints.size()));
                 return out;
             }
             out.skinned[v] += weight * joints[static_cast<std::size_t>(data.joint[i])];

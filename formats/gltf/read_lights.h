@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "formats/gltf/document.h"
-#include "formats/gltf/report.h"
+#include "formats/gltf/named_object.h"
 
 namespace opaline::formats::gltf {
 
@@ -14,10 +14,7 @@ namespace opaline::formats::gltf {
 /// are kept: build_lights judges them.
 std::vector<LightSource> read_lights(const nlohmann::json& root, Report& report);
 
-/// Light that each node carries, kNone where it has none. Its link is not checked.
-std::vector<std::uint32_t> read_node_lights(const nlohmann::json& root, Report& report);
-
-/// `emissiveFactor` times KHR_materials_emissive_strength, and the texture, of each material.
-std::vector<EmissionSource> read_emission(const nlohmann::json& root, Report& report);
+/// The light that a node carries, kNone where it has none. The link is not checked.
+std::uint32_t read_node_light(const NamedObject& node);
 
 }  // namespace opaline::formats::gltf

@@ -56,11 +56,9 @@ struct Reader {
         const Accessor& accessor = document.accessors[found->second];
         if (accessor.is_matrix || accessor.components < min_components ||
             accessor.components > max_components || accessor.type == ComponentType::uint32) {
-            report.error(where,
-                         semantic + " has " + std::to_string(accessor.components) + " x " +
-                             name_of(accessor.type) + " per vertex, expected " +
-                             std::to_string(min_components) + " numbers",
-                         kExportAgain);
+            report.error(where, semantic + " has " + std::to_string(accessor.components) + " x " +
+                                    name_of(accessor.type) + " per vertex, expected " +
+                                    std::to_string(min_components) + " numbers");
             return {};
         }
         if (accessor.count != vertices) {
@@ -72,8 +70,7 @@ struct Reader {
         }
         auto read = read_floats(document, buffers, found->second);
         if (read.sparse_index_bad) {
-            report.error(where, semantic + " has a sparse index past its last element",
-                         kExportAgain);
+            report.error(where, semantic + " has a sparse index past its last element");
             return {};
         }
         return std::move(read.value);
@@ -95,11 +92,10 @@ std::vector<std::uint32_t> drawn_vertices(const Reader& reader, std::size_t vert
                        accessor.type == ComponentType::uint16 ||
                        accessor.type == ComponentType::uint32;
     if (!whole || accessor.components != 1 || accessor.normalized) {
-        reader.report.error(reader.where,
-                            std::string("its indices are ") + std::to_string(accessor.components) +
-                                " x " + name_of(accessor.type) +
-                                ", expected one unsigned whole number each",
-                            kExportAgain);
+        reader.report.error(reader.where, std::string("its indices are ") +
+                                              std::to_string(accessor.components) + " x " +
+                                              name_of(accessor.type) +
+                                              ", expected one unsigned whole number each");
         return {};
     }
     auto read = read_indices(reader.document, reader.buffers, accessor_index);
@@ -111,7 +107,7 @@ std::vector<std::uint32_t> drawn_vertices(const Reader& reader, std::size_t vert
                                       : "index " + std::to_string(bad - read.value.begin()) +
                                             " is " + std::to_string(*bad) + ", but there are " +
                                             std::to_string(vertices) + " vertices";
-        reader.report.error(reader.where, fault, kExportAgain);
+        reader.report.error(reader.where, fault);
         return {};
     }
     return std::move(read.value);
@@ -167,8 +163,8 @@ void read_joints(const Reader& reader, std::uint64_t vertices, PrimitiveData& da
         const bool has_joints = attributes.contains("JOINTS_" + n);
         const bool has_weights = attributes.contains("WEIGHTS_" + n);
         if (has_joints != has_weights) {
-            reader.report.error(
-                reader.where, "it has only one of JOINTS_" + n + " and WEIGHTS_" + n, kExportAgain);
+            reader.report.error(reader.where,
+                                "it has only one of JOINTS_" + n + " and WEIGHTS_" + n);
             return;
         }
         if (!has_joints) {
@@ -180,10 +176,8 @@ void read_joints(const Reader& reader, std::uint64_t vertices, PrimitiveData& da
         const Accessor& joint = reader.document.accessors[attributes.at("JOINTS_" + n)];
         if ((joint.type != ComponentType::uint8 && joint.type != ComponentType::uint16) ||
             joint.normalized) {
-            reader.report.error(reader.where,
-                                "JOINTS_" + n + " has " + name_of(joint.type) +
-                                    ", expected UNSIGNED_BYTE or UNSIGNED_SHORT",
-                                kExportAgain);
+            reader.report.error(reader.where, "JOINTS_" + n + " has " + name_of(joint.type) +
+                                                  ", expected UNSIGNED_BYTE or UNSIGNED_SHORT");
         }
         if (joints.back().empty() || weights.back().empty()) {
             return;  // at fault
@@ -210,10 +204,9 @@ std::optional<PrimitiveData> read_primitive(const Document& document,
     const Reader reader{document, buffers, primitive, where, report};
     const auto position = primitive.attributes.find("POSITION");
     if (position == primitive.attributes.end()) {
-        report.error(where, "it has no POSITION attribute", "export the mesh with positions");
-        return std::nullopt;
+        return report.fail(where, "it has no POSITION attribute", "export the mesh with positions");
     }
-    const std::size_t faults = report.errors.size() + report.errors_left_out;
+    const std::size_t faults = report.error_count();
     const std::uint64_t vertices = document.accessors[position->second].count;
 
     PrimitiveData data;
@@ -249,7 +242,7 @@ std::optional<PrimitiveData> read_primitive(const Document& document,
                      "repair the mesh before export");
     }
     auto drawn = drawn_vertices(reader, vertices);
-    if (report.errors.size() + report.errors_left_out != faults) {
+    if (report.error_count() != faults) {
         return std::nullopt;
     }
     if (primitive.mode == Mode::triangles && drawn.size() % 3 != 0) {

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "formats/gltf/named_object.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -16,27 +18,25 @@ bool is_index(const nlohmann::json& value) {
 
 std::vector<Skin> read_skins(const nlohmann::json& root, Report& report) {
     std::vector<Skin> skins;
-    const auto found = root.find("skins");
-    if (found == root.end()) {
+    const nlohmann::json* found = find_member(root, "skins");
+    if (!found) {
         return skins;
     }
     for (const nlohmann::json& entry : *found) {
         const std::string where = "skin " + std::to_string(skins.size());
         Skin& skin = skins.emplace_back();
-        const auto joints = entry.find("joints");
-        if (joints == entry.end() || !joints->is_array() || joints->empty() ||
+        const nlohmann::json* joints = find_member(entry, "joints");
+        if (!joints || !joints->is_array() || joints->empty() ||
             !std::all_of(joints->begin(), joints->end(), is_index)) {
-            report.error(where, "joints is not a list of nodes", kExportAgain);
+            report.error(where, "joints is not a list of nodes");
             continue;
         }
-        for (const nlohmann::json& joint : *joints) {
-            skin.joints.push_back(joint.get<std::uint32_t>());
-        }
-        if (const auto bind = entry.find("inverseBindMatrices"); bind != entry.end()) {
+        skin.joints = joints->get<std::vector<std::uint32_t>>();
+        if (const nlohmann::json* bind = find_member(entry, "inverseBindMatrices")) {
             if (is_index(*bind)) {
                 skin.inverse_bind_matrices = bind->get<std::uint32_t>();
             } else {
-                report.error(where, "inverseBindMatrices is not an accessor", kExportAgain);
+                report.error(where, "inverseBindMatrices is not an accessor");
             }
         }
     }

@@ -1,6 +1,8 @@
 #include "formats/gltf/report.h"
 
 #include <algorithm>
+#include <new>
+#include <stdexcept>
 #include <utility>
 
 namespace opaline::formats::gltf {
@@ -12,6 +14,11 @@ void Report::error(std::string where, std::string fault, std::string remedy) {
     }
     errors.push_back(
         {Diagnostic::Severity::error, file, std::move(where), std::move(fault), std::move(remedy)});
+}
+
+std::nullopt_t Report::fail(std::string where, std::string fault, std::string remedy) {
+    error(std::move(where), std::move(fault), std::move(remedy));
+    return std::nullopt;
 }
 
 void Report::warn(std::string where, std::string fault, std::string remedy) {
@@ -35,6 +42,20 @@ Error Report::take_error() {
                           std::to_string(errors_left_out) + " more errors are left out", ""});
     }
     return {kind, std::move(errors)};
+}
+
+Error Report::take_exception(const char* if_large, const char* otherwise) const {
+    std::string what;
+    try {
+        throw;
+    } catch (const std::bad_alloc&) {
+    } catch (const std::length_error&) {
+    } catch (const std::exception& problem) {
+        what = "it cannot be read: " + json_fault(problem.what());
+    }
+    return what.empty()
+               ? make_error(ErrorKind::resource, file, "", "it does not fit into memory", if_large)
+               : make_error(ErrorKind::bad_input, file, "", what, otherwise);
 }
 
 std::vector<Diagnostic> Report::take_warnings() {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,14 +23,19 @@ struct Report {
     std::vector<std::string> notes;  ///< what a conforming file leaves to the reader
     std::size_t errors_left_out = 0, warnings_left_out = 0;
 
-    void error(std::string where, std::string fault, std::string remedy = {});
+    void error(std::string where, std::string fault, std::string remedy = kExportAgain);
+    /// error(), for `return report.fail(...)` out of what returns an optional.
+    std::nullopt_t fail(std::string where, std::string fault, std::string remedy = kExportAgain);
     void warn(std::string where, std::string fault, std::string remedy = {});
     /// An error that is about limits or memory, not about a damaged file.
     void over_limit(std::string where, std::string fault, std::string remedy = {});
 
     bool failed() const { return !errors.empty(); }
+    std::size_t error_count() const { return errors.size() + errors_left_out; }
     /// Precondition: failed().
     Error take_error();
+    /// The exception that is being handled: memory, or what a library says of malformed input.
+    Error take_exception(const char* if_large, const char* otherwise) const;
     std::vector<Diagnostic> take_warnings();
 };
 

@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "formats/gltf/named_object.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -77,14 +79,12 @@ std::optional<Bytes> read_data_uri(Resources& resources, std::string_view uri,
                                    const std::string& where, Report& report) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string_view::npos || !uri.substr(0, comma).ends_with(";base64")) {
-        report.error(where, "its data URI is not base64", "store the data as base64 or in a file");
-        return std::nullopt;
+        return report.fail(where, "its data URI is not base64",
+                           "store the data as base64 or in a file");
     }
     auto bytes = decode_base64(uri.substr(comma + 1));
     if (!bytes) {
-        report.error(where, "its data URI holds characters that are not base64",
-                     "export the file again");
-        return std::nullopt;
+        return report.fail(where, "its data URI holds characters that are not base64");
     }
     return resources.keep(std::move(*bytes));
 }
@@ -105,8 +105,7 @@ std::optional<std::filesystem::path> confined_path(const Resources& resources,
                                                    std::string_view name, const std::string& where,
                                                    Report& report) {
     if (name.empty() || name.find('\0') != std::string_view::npos || name.size() > 4096) {
-        report.error(where, "its URI " + in_quotes(name) + " is malformed", kKeepInside);
-        return std::nullopt;
+        return report.fail(where, "its URI " + in_quotes(name) + " is malformed", kKeepInside);
     }
     const std::filesystem::path path(name);
     std::error_code code;
@@ -118,21 +117,16 @@ std::optional<std::filesystem::path> confined_path(const Resources& resources,
          std::any_of(resources.allowed.begin(), resources.allowed.end(),
                      [&](const std::filesystem::path& folder) { return is_within(folder, file); }));
     if (!is_allowed) {
-        report.error(where, "its URI " + in_quotes(name) + " leaves the asset's folder",
-                     kKeepInside);
-        return std::nullopt;
+        return report.fail(where, "its URI " + in_quotes(name) + " leaves the asset's folder",
+                           kKeepInside);
     }
     return path;
 }
 
 bool is_meshopt_placeholder(const Json& buffer) {
-    const auto extensions = buffer.find("extensions");
-    if (extensions == buffer.end() || !extensions->is_object()) {
-        return false;
-    }
-    const auto meshopt = extensions->find("EXT_meshopt_compression");
-    return meshopt != extensions->end() && meshopt->is_object() &&
-           meshopt->value("fallback", Json(false)) == true;
+    const Json* meshopt = find_extension(buffer, "EXT_meshopt_compression");
+    const Json* fallback = meshopt ? find_member(*meshopt, "fallback") : nullptr;
+    return fallback && *fallback == true;
 }
 
 }  // namespace
@@ -179,8 +173,7 @@ std::optional<Bytes> read_uri(Resources& resources, std::string_view uri, const 
     }
     const auto name = percent_decode(uri);
     if (!name) {
-        report.error(where, "its URI " + in_quotes(uri) + " is malformed", kKeepInside);
-        return std::nullopt;
+        return report.fail(where, "its URI " + in_quotes(uri) + " is malformed", kKeepInside);
     }
     return read_inside(resources, *name, where, report);
 }
@@ -198,11 +191,11 @@ void load_buffers(const nlohmann::json& root, const Container& container, Resour
         const auto uri = buffer.find("uri");
         std::optional<Bytes> bytes;
         if (length == buffer.end()) {
-            report.error(where, "byteLength is missing", "export the file again");
+            report.error(where, "byteLength is missing");
         } else if (uri != buffer.end() && uri->is_string()) {
             bytes = read_uri(resources, uri->get_ref<const std::string&>(), where, report);
         } else if (uri != buffer.end()) {
-            report.error(where, "its uri is not a string", "export the file again");
+            report.error(where, "its uri is not a string");
         } else if (is_meshopt_placeholder(buffer)) {
             bytes.emplace();
             resources.buffers.push_back(*bytes);
@@ -210,8 +203,7 @@ void load_buffers(const nlohmann::json& root, const Container& container, Resour
         } else if (i == 0 && container.bin) {
             bytes = container.bin;
         } else {
-            report.error(where, "it has no uri and there is no binary chunk for it",
-                         "export the file again");
+            report.error(where, "it has no uri and there is no binary chunk for it");
         }
         if (bytes && bytes->size() < length->get<std::uint64_t>()) {
             report.error(where,

@@ -24,10 +24,8 @@ std::uint64_t span_bytes(std::uint64_t count, std::uint64_t stride, std::uint64_
 void check_link(std::uint32_t index, std::size_t size, const std::string& where, const char* what,
                 Report& report) {
     if (index != kNone && index >= size) {
-        report.error(
-            where,
-            std::string(what) + " " + number(index) + " does not exist: there are " + number(size),
-            kExportAgain);
+        report.error(where, std::string(what) + " " + number(index) +
+                                " does not exist: there are " + number(size));
     }
 }
 
@@ -36,17 +34,13 @@ void validate_views(const Document& document, const std::vector<Bytes>& buffers,
         const BufferView& view = document.views[i];
         const std::string where = "bufferView " + number(i);
         if (view.buffer >= buffers.size()) {
-            report.error(where,
-                         "buffer " + number(view.buffer) + " does not exist: there are " +
-                             number(buffers.size()),
-                         kExportAgain);
+            report.error(where, "buffer " + number(view.buffer) + " does not exist: there are " +
+                                    number(buffers.size()));
         } else if (!fits(view.offset, view.length, buffers[view.buffer].size())) {
-            report.error(where,
-                         "its bytes " + number(view.offset) + " to " +
-                             number(view.offset + view.length) + " pass the end of buffer " +
-                             number(view.buffer) + " (" + number(buffers[view.buffer].size()) +
-                             " bytes)",
-                         kExportAgain);
+            report.error(where, "its bytes " + number(view.offset) + " to " +
+                                    number(view.offset + view.length) + " pass the end of buffer " +
+                                    number(view.buffer) + " (" +
+                                    number(buffers[view.buffer].size()) + " bytes)");
         }
     }
 }
@@ -56,31 +50,23 @@ void check_run(const Document& document, std::uint32_t view_index, std::uint64_t
                std::uint64_t count, std::uint64_t element, std::uint64_t component,
                const std::string& where, Report& report) {
     if (view_index >= document.views.size()) {
-        report.error(where,
-                     "bufferView " + number(view_index) + " does not exist: there are " +
-                         number(document.views.size()),
-                     kExportAgain);
+        report.error(where, "bufferView " + number(view_index) + " does not exist: there are " +
+                                number(document.views.size()));
         return;
     }
     const BufferView& view = document.views[view_index];
     const std::uint64_t stride = view.stride == 0 ? element : view.stride;
     if (stride < element) {
-        report.error(where,
-                     "byteStride " + number(stride) + " is smaller than its elements of " +
-                         number(element) + " bytes",
-                     kExportAgain);
+        report.error(where, "byteStride " + number(stride) + " is smaller than its elements of " +
+                                number(element) + " bytes");
     } else if (count > kMaxFileBytes ||
                !fits(offset, span_bytes(count, stride, element), view.length)) {
-        report.error(where,
-                     number(count) + " elements from byte " + number(offset) +
-                         " pass the end of bufferView " + number(view_index) + " (" +
-                         number(view.length) + " bytes)",
-                     kExportAgain);
+        report.error(where, number(count) + " elements from byte " + number(offset) +
+                                " pass the end of bufferView " + number(view_index) + " (" +
+                                number(view.length) + " bytes)");
     } else if ((offset % component) != 0 || (stride % component) != 0) {
-        report.error(where,
-                     "byteOffset " + number(offset) + " or byteStride " + number(stride) +
-                         " is not a multiple of the component size " + number(component),
-                     kExportAgain);
+        report.error(where, "byteOffset " + number(offset) + " or byteStride " + number(stride) +
+                                " is not a multiple of the component size " + number(component));
     }
 }
 
@@ -89,14 +75,12 @@ void validate_accessor(const Document& document, std::size_t index, Report& repo
     const std::string where = "accessor " + number(index);
     const std::uint64_t component = component_bytes(accessor.type);
     if (component == 0) {
-        report.error(where,
-                     "componentType " + number(static_cast<std::uint32_t>(accessor.type)) +
-                         " is not one of glTF",
-                     kExportAgain);
+        report.error(where, "componentType " + number(static_cast<std::uint32_t>(accessor.type)) +
+                                " is not one of glTF");
         return;
     }
     if (accessor.count == 0) {
-        report.error(where, "count is 0, expected at least 1", kExportAgain);
+        report.error(where, "count is 0, expected at least 1");
         return;
     }
     if (accessor.is_matrix && accessor.components != 16) {
@@ -120,17 +104,13 @@ void validate_accessor(const Document& document, std::size_t index, Report& repo
                        sparse.index_type == ComponentType::uint16 ||
                        sparse.index_type == ComponentType::uint32;
     if (!whole) {
-        report.error(where,
-                     "its sparse indices have componentType " +
-                         number(static_cast<std::uint32_t>(sparse.index_type)),
-                     kExportAgain);
+        report.error(where, "its sparse indices have componentType " +
+                                number(static_cast<std::uint32_t>(sparse.index_type)));
         return;
     }
     if (sparse.count == 0 || sparse.count > accessor.count) {
-        report.error(where,
-                     "its sparse count is " + number(sparse.count) + ", expected 1 to " +
-                         number(accessor.count),
-                     kExportAgain);
+        report.error(where, "its sparse count is " + number(sparse.count) + ", expected 1 to " +
+                                number(accessor.count));
         return;
     }
     const std::uint64_t index_bytes = component_bytes(sparse.index_type);
@@ -157,10 +137,9 @@ void validate_links(const Document& document, Report& report) {
                 }
             }
             if (static_cast<std::uint32_t>(primitive.mode) > 6) {
-                report.error(where,
-                             "mode is " + number(static_cast<std::uint32_t>(primitive.mode)) +
-                                 ", expected 0 to 6",
-                             kExportAgain);
+                report.error(where, "mode is " +
+                                        number(static_cast<std::uint32_t>(primitive.mode)) +
+                                        ", expected 0 to 6");
             }
         }
     }
@@ -209,12 +188,10 @@ void validate_skins(const Document& document, Report& report) {
         const Accessor& accessor = document.accessors[bind];
         if (!accessor.is_matrix || accessor.components != 16 ||
             accessor.type != ComponentType::float32) {
-            report.error(where, "its inverseBindMatrices are not MAT4 of FLOAT", kExportAgain);
+            report.error(where, "its inverseBindMatrices are not MAT4 of FLOAT");
         } else if (accessor.count < skin.joints.size()) {
-            report.error(where,
-                         "it has " + number(skin.joints.size()) + " joints, but " +
-                             number(accessor.count) + " inverse bind matrices",
-                         kExportAgain);
+            report.error(where, "it has " + number(skin.joints.size()) + " joints, but " +
+                                    number(accessor.count) + " inverse bind matrices");
         }
     }
 }

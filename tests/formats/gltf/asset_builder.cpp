@@ -101,6 +101,30 @@ AssetBuilder triangle_asset() {
     return asset;
 }
 
+AssetBuilder textured_triangle(Json material, float other) {
+    AssetBuilder asset = triangle_asset();
+    Json& primitive = asset.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
+    primitive["attributes"]["TEXCOORD_1"] = asset.add<float>({0, 0, other, 0, 0, other}, "VEC2");
+    primitive["material"] = 0u;
+    asset.json["materials"] = Json::array({std::move(material)});
+    return asset;
+}
+
+void expect_faults(const AssetBuilder& sound, const std::vector<JsonFault>& faults) {
+    for (const auto& [pointer, value, fault] : faults) {
+        AssetBuilder asset = sound;
+        const Json::json_pointer at(pointer);
+        if (value.is_discarded()) {
+            asset.json[at.parent_pointer()].erase(at.back());
+        } else {
+            asset.json[at] = value;
+        }
+        EXPECT_THAT(errors_of(import_asset(asset)), ::testing::HasSubstr(fault))
+            << pointer << " = " << value;
+    }
+}
+
 std::string base64(const Blob& bytes) {
     constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;

@@ -58,6 +58,9 @@ struct AssetBuilder {
 
 /// A right triangle in the plane z = 0, counter-clockwise seen from +z, at node 0.
 AssetBuilder triangle_asset();
+/// The same with this material, TEXCOORD_0 of (0, 0), (1, 0), (0, 1), and TEXCOORD_1 `other` times
+/// as large.
+AssetBuilder textured_triangle(Json material, float other = 1);
 
 std::string base64(const Blob& bytes);
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
@@ -77,5 +80,15 @@ formats::ImportedScene must_import(const AssetBuilder& asset,
 /// All diagnostics as lines "where: fault (remedy)"; empty on success.
 std::string errors_of(const formats::Result<formats::ImportedScene>& result);
 std::string lines(const std::vector<formats::Diagnostic>& diagnostics);
+
+/// A value put at a JSON pointer of an asset (kErased: the member is taken away), and part of the
+/// errors that this makes.
+struct JsonFault {
+    std::string pointer;
+    Json value;
+    const char* fault;
+};
+inline const Json kErased = Json(Json::value_t::discarded);
+void expect_faults(const AssetBuilder& sound, const std::vector<JsonFault>& faults);
 
 }  // namespace opaline::tests

@@ -186,6 +186,7 @@ TEST(GltfCompression, DracoDecodesToTheSameTriangles) {
 }
 
 TEST(GltfCompression, DamagedDescriptionsAreErrorsWithTheRemedy) {
+    const std::string view = "/bufferViews/0/extensions/EXT_meshopt_compression/";
     for (const auto& [key, value] :
          std::vector<std::pair<const char*, Json>>{{"byteStride", 7u},
                                                    {"count", 1'000'000'000u},
@@ -194,17 +195,14 @@ TEST(GltfCompression, DamagedDescriptionsAreErrorsWithTheRemedy) {
                                                    {"byteLength", 1'000'000u},
                                                    {"filter", "QUATERNION"},
                                                    {"count", nullptr}}) {
-        AssetBuilder asset = meshopt_sheet();
-        asset.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][key] = value;
-        EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("decompress with gltfpack")) << key;
+        expect_faults(meshopt_sheet(), {{view + key, value, "decompress with gltfpack"}});
     }
-    for (const auto& [key, value] : std::vector<std::pair<const char*, Json>>{
-             {"bufferView", 9u}, {"attributes", 1u}, {"attributes", {{"POSITION", 77u}}}}) {
-        AssetBuilder asset = draco_sheet(draco::MESH_EDGEBREAKER_ENCODING);
-        asset.json["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"][key] =
-            value;
-        EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("export without compression")) << key;
-    }
+    const std::string mesh = "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/";
+    const char* const remedy = "export without compression";
+    expect_faults(draco_sheet(draco::MESH_EDGEBREAKER_ENCODING),
+                  {{mesh + "bufferView", 9u, remedy},
+                   {mesh + "attributes", 1u, remedy},
+                   {mesh + "attributes/POSITION", 77u, remedy}});
 }
 
 TEST(GltfCompression, FlippedBitsNeverCrash) {

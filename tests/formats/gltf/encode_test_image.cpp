@@ -18,4 +18,13 @@ Blob encode_png(const Blob& samples, std::uint32_t width, std::uint32_t height, 
     return out;
 }
 
+std::size_t add_texture(AssetBuilder& asset, const Blob& file, Json image, Json texture) {
+    image["bufferView"] = asset.add_view(file.data(), file.size());
+    image["mimeType"] = "image/png";
+    texture["source"] = asset.json["images"].size();
+    asset.json["images"].push_back(std::move(image));
+    asset.json["textures"].push_back(std::move(texture));
+    return asset.json["textures"].size() - 1;
+}
+
 }  // namespace opaline::tests

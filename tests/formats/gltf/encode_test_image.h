@@ -12,4 +12,8 @@ enum class TestImage { rgba, grey };
 Blob encode_png(const Blob& samples, std::uint32_t width, std::uint32_t height,
                 TestImage kind = TestImage::rgba);
 
+/// Adds a file as an image, with these members, and a texture of it; the texture's index.
+std::size_t add_texture(AssetBuilder& asset, const Blob& file, Json image = Json::object(),
+                        Json texture = Json::object());
+
 }  // namespace opaline::tests

@@ -12,14 +12,8 @@ using ::testing::Not;
 
 /// A triangle with texture coordinates and this material, named Shell.
 AssetBuilder asset_with_material(Json material) {
-    AssetBuilder asset = triangle_asset();
-    Json& primitive = asset.json["meshes"][0]["primitives"][0];
-    primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
-    primitive["attributes"]["TEXCOORD_1"] = asset.add<float>({0, 0, 2, 0, 0, 2}, "VEC2");
-    primitive["material"] = 0u;
     material["name"] = "Shell";
-    asset.json["materials"] = Json::array({material});
-    return asset;
+    return textured_triangle(std::move(material), 2);
 }
 
 // Red says nothing; roughness 1 and 0.2, metallic 0 and 1.
@@ -33,10 +27,8 @@ AssetBuilder textured(bool with_base_color) {
     }
     AssetBuilder asset = asset_with_material({{"pbrMetallicRoughness", pbr}});
     const Blob png = encode_png(kRoughThenMetal, 2, 1);
-    const auto view = asset.add_view(png.data(), png.size());
-    const Json image = {{"bufferView", view}, {"mimeType", "image/png"}};
-    asset.json["images"] = Json::array({image, image});
-    asset.json["textures"] = Json::array({{{"source", 0u}, {"sampler", 0u}}, {{"source", 1u}}});
+    add_texture(asset, png, Json::object(), {{"sampler", 0u}});
+    add_texture(asset, png);
     asset.json["samplers"] = Json::array({{{"wrapS", 33071u}, {"wrapT", 33648u}}});
     return asset;
 }
@@ -143,12 +135,11 @@ TEST(GltfReflection, InfiniteIndexOfRefractionIsKeptAsZero) {
 }
 
 TEST(GltfReflection, WrongTypesAreErrorsThatNameTheMember) {
-    for (const char* name : {"metallicFactor", "roughnessFactor"}) {
-        EXPECT_THAT(
-            errors_of(import_asset(asset_with_material({{"pbrMetallicRoughness", {{name, "x"}}}}))),
-            HasSubstr(std::string("material 'Shell' > pbrMetallicRoughness: ") + name +
-                      " is not a number"));
-    }
+    expect_faults(asset_with_material({{"pbrMetallicRoughness", Json::object()}}),
+                  {{"/materials/0/pbrMetallicRoughness/metallicFactor", "x",
+                    "material 'Shell' > pbrMetallicRoughness: metallicFactor is not a number"},
+                   {"/materials/0/pbrMetallicRoughness/roughnessFactor", "x",
+                    "material 'Shell' > pbrMetallicRoughness: roughnessFactor is not a number"}});
 }
 
 TEST(GltfReflection, TextureKeepsItsCodesAndWrapModes) {
@@ -218,12 +209,10 @@ TEST(GltfReflection, TexturesOfSpecularAreNamed) {
 }
 
 TEST(GltfReflection, DamagedTextureLinksAreErrors) {
-    EXPECT_THAT(errors_of(import_asset(asset_with_material(
-                    {{"pbrMetallicRoughness", {{"metallicRoughnessTexture", {{"index", 9u}}}}}}))),
-                HasSubstr("texture"));
-    AssetBuilder asset = textured(false);
-    asset.json["textures"][0].erase("source");
-    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("texture 0 has no PNG or JPEG image"));
+    expect_faults(
+        textured(false),
+        {{"/materials/0/pbrMetallicRoughness/metallicRoughnessTexture/index", 9u, "texture"},
+         {"/textures/0/source", kErased, "texture 0 has no PNG or JPEG image"}});
 }
 
 }  // namespace

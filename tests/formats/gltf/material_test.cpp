@@ -43,18 +43,10 @@ Blob encode_jpeg(std::uint8_t grey, std::uint32_t side) {
 
 /// The triangle with texture coordinates and a material whose base colour is `image`.
 AssetBuilder textured(const Blob& image) {
-    AssetBuilder asset = triangle_asset();
-    Json& primitive = asset.json["meshes"][0]["primitives"][0];
-    primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
-    primitive["material"] = 0u;
-    asset.json["materials"] =
-        Json::array({{{"name", "Paint"},
-                      {"pbrMetallicRoughness",
-                       {{"metallicFactor", 0}, {"baseColorTexture", {{"index", 0u}}}}}}});
-    asset.json["textures"] = Json::array({{{"source", 0u}}});
-    const auto view = asset.add_view(image.data(), image.size());
-    asset.json["images"] =
-        Json::array({{{"name", "Grain"}, {"bufferView", view}, {"mimeType", "image/png"}}});
+    AssetBuilder asset = textured_triangle(
+        {{"name", "Paint"},
+         {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"baseColorTexture", {{"index", 0u}}}}}});
+    add_texture(asset, image, {{"name", "Grain"}});
     return asset;
 }
 

@@ -84,39 +84,19 @@ TEST(GltfPose, WeightsNeedNotAddUpToOne) {
 }
 
 TEST(GltfPose, FaultsOfSkinsAreNamed) {
-    const auto fault_of = [](const auto& damage) {
-        AssetBuilder asset = bound_triangle();
-        damage(asset, asset.json["meshes"][0]["primitives"][0]["attributes"]);
-        return errors_of(import_asset(asset));
-    };
-    EXPECT_THAT(fault_of([](AssetBuilder& asset, Json&) { asset.json["nodes"][0]["skin"] = 3u; }),
-                HasSubstr("skin 3 does not exist"));
-    EXPECT_THAT(fault_of([](AssetBuilder& asset, Json&) {
-                    asset.json["skins"][0]["joints"] = {1u, 77u};
-                }),
-                HasSubstr("joint node 77 does not exist"));
-    EXPECT_THAT(fault_of([](AssetBuilder& asset, Json&) {
-                    asset.json["skins"][0]["joints"] = Json::array();
-                }),
-                HasSubstr("joints is not a list of nodes"));
-    EXPECT_THAT(
-        fault_of([](AssetBuilder& asset, Json&) { asset.json["skins"][0]["joints"] = {1u}; }),
-        HasSubstr("vertex 1 is bound to joint 1, but its skin has 1"));
-    EXPECT_THAT(fault_of([](AssetBuilder& asset, Json&) {
-                    asset.json["skins"][0]["inverseBindMatrices"] = 0u;
-                }),
-                HasSubstr("inverseBindMatrices are not MAT4"));
-    EXPECT_THAT(fault_of([](AssetBuilder&, Json& attributes) { attributes.erase("WEIGHTS_0"); }),
-                HasSubstr("only one of JOINTS_0 and WEIGHTS_0"));
-    EXPECT_THAT(fault_of([](AssetBuilder&, Json& attributes) {
-                    attributes["JOINTS_0"] = attributes["WEIGHTS_0"];
-                }),
-                HasSubstr("JOINTS_0 has FLOAT"));
-    EXPECT_THAT(fault_of([](AssetBuilder& asset, Json& attributes) {
-                    attributes["WEIGHTS_0"] =
-                        asset.add<float>({-1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
-                }),
-                HasSubstr("weight of vertex 0 is negative"));
+    AssetBuilder asset = bound_triangle();
+    const auto negative = asset.add<float>({-1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, "VEC4");
+    const std::string attributes = "/meshes/0/primitives/0/attributes";
+    const std::string joints = attributes + "/JOINTS_0", weights = attributes + "/WEIGHTS_0";
+    expect_faults(asset, {{"/nodes/0/skin", 3u, "skin 3 does not exist"},
+                          {"/skins/0/joints", {1u, 77u}, "joint node 77 does not exist"},
+                          {"/skins/0/joints", Json::array(), "joints is not a list of nodes"},
+                          {"/skins/0/joints", Json::array({1u}),
+                           "vertex 1 is bound to joint 1, but its skin has 1"},
+                          {"/skins/0/inverseBindMatrices", 0u, "inverseBindMatrices are not MAT4"},
+                          {weights, kErased, "only one of JOINTS_0 and WEIGHTS_0"},
+                          {joints, asset.json[Json::json_pointer(weights)], "JOINTS_0 has FLOAT"},
+                          {weights, negative, "weight of vertex 0 is negative"}});
 }
 
 TEST(GltfPose, APrimitiveWithoutJointsStandsByItsNode) {
@@ -160,19 +140,16 @@ TEST(GltfPose, DefaultWeightsOfMorphTargetsAreApplied) {
 TEST(GltfPose, FaultsOfMorphTargetsAreNamed) {
     AssetBuilder asset = morphed_triangle();
     asset.json["meshes"][0]["weights"] = {1, 1};
-    Json& target = asset.json["meshes"][0]["primitives"][0]["targets"][1];
-    target["POSITION"] = asset.add<float>({1, 0, 0}, "VEC3");
-    EXPECT_THAT(errors_of(import_asset(asset)),
-                HasSubstr("morph target 1 POSITION has 1 values but POSITION has 3"));
-    target["POSITION"] = 99u;
-    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("accessor 99 does not exist"));
-    target["POSITION"] = "x";
-    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("morph target 'POSITION' is"));
-    target = 1u;
-    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("targets is not an array of objects"));
-    asset = morphed_triangle();
-    asset.json["meshes"][0]["weights"] = {"x"};
-    EXPECT_THAT(errors_of(import_asset(asset)), HasSubstr("weights is not an array of numbers"));
+    const auto short_one = asset.add<float>({1, 0, 0}, "VEC3");
+    const char* const target = "/meshes/0/primitives/0/targets/1";
+    expect_faults(
+        asset, {{target,
+                 {{"POSITION", short_one}},
+                 "morph target 1 POSITION has 1 values but POSITION has 3"},
+                {target, {{"POSITION", 99u}}, "accessor 99 does not exist"},
+                {target, {{"POSITION", "x"}}, "morph target 'POSITION' is"},
+                {target, 1u, "targets is not an array of objects"},
+                {"/meshes/0/weights", Json::array({"x"}), "weights is not an array of numbers"}});
 }
 
 }  // namespace

@@ -15,29 +15,21 @@ const Blob kPixels = {255, 0, 0, 255, 0, 128, 255, 64};
 
 /// The triangle with texture coordinates and a scattering medium, and a texture for it.
 AssetBuilder asset_with_scatter(Json scatter) {
-    AssetBuilder asset = triangle_asset();
-    Json& primitive = asset.json["meshes"][0]["primitives"][0];
-    primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
-    primitive["attributes"]["TEXCOORD_1"] = asset.add<float>({0, 0, 0.5, 0, 0, 0.5}, "VEC2");
-    primitive["material"] = 0u;
     scatter["scatterStrengthFactor"] = 0.75;
     scatter["scatterAnisotropy"] = 0.5;
-    asset.json["materials"] =
-        Json::array({{{"name", "Wax"},
-                      {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
-                      {"extensions",
-                       {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
-                        {"KHR_materials_volume",
-                         {{"thicknessFactor", 1},
-                          {"attenuationDistance", 0.02},
-                          {"attenuationColor", {0.9, 0.5, 0.25}}}},
-                        {"KHR_materials_scatter", std::move(scatter)}}}}});
-    asset.json["textures"] = Json::array({{{"source", 0u}, {"sampler", 0u}}});
+    AssetBuilder asset =
+        textured_triangle({{"name", "Wax"},
+                           {"pbrMetallicRoughness", {{"metallicFactor", 0}}},
+                           {"extensions",
+                            {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+                             {"KHR_materials_volume",
+                              {{"thicknessFactor", 1},
+                               {"attenuationDistance", 0.02},
+                               {"attenuationColor", {0.9, 0.5, 0.25}}}},
+                             {"KHR_materials_scatter", std::move(scatter)}}}},
+                          0.5f);
     asset.json["samplers"] = Json::array({{{"wrapT", 33071}}});
-    const Blob image = encode_png(kPixels, 2, 1);
-    const auto view = asset.add_view(image.data(), image.size());
-    asset.json["images"] =
-        Json::array({{{"name", "Grain"}, {"bufferView", view}, {"mimeType", "image/png"}}});
+    add_texture(asset, encode_png(kPixels, 2, 1), {{"name", "Grain"}}, {{"sampler", 0u}});
     return asset;
 }
 

@@ -12,23 +12,13 @@ constexpr const char* kSpecularGlossiness = "KHR_materials_pbrSpecularGlossiness
 
 /// A triangle with texture coordinates whose material is `extension`.
 AssetBuilder specular_asset(const Json& extension) {
-    AssetBuilder asset = triangle_asset();
-    Json& primitive = asset.json["meshes"][0]["primitives"][0];
-    primitive["attributes"]["TEXCOORD_0"] = asset.add<float>({0, 0, 1, 0, 0, 1}, "VEC2");
-    primitive["material"] = 0u;
     // What other readers fall back on does not count.
-    asset.json["materials"] =
-        Json::array({{{"pbrMetallicRoughness", {{"baseColorFactor", {0.1, 0.1, 0.1, 1}}}},
-                      {"extensions", {{kSpecularGlossiness, extension}}}}});
-    return asset;
+    return textured_triangle({{"pbrMetallicRoughness", {{"baseColorFactor", {0.1, 0.1, 0.1, 1}}}},
+                              {"extensions", {{kSpecularGlossiness, extension}}}});
 }
 
 std::size_t add_specular_texture(AssetBuilder& asset, const Blob& rgba, std::uint32_t width) {
-    const Blob png = encode_png(rgba, width, 1);
-    const std::size_t view = asset.add_view(png.data(), png.size());
-    asset.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
-    asset.json["textures"].push_back({{"source", asset.json["images"].size() - 1}});
-    return asset.json["textures"].size() - 1;
+    return add_texture(asset, encode_png(rgba, width, 1));
 }
 
 TEST(GltfSpecularGlossiness, FactorsBecomeAnInfiniteIndexOfThatSpecularColour) {
@@ -99,13 +89,13 @@ TEST(GltfSpecularGlossiness, ATextureMappedOtherwiseGivesItsMean) {
 }
 
 TEST(GltfSpecularGlossiness, WrongMembersAreNamed) {
-    EXPECT_THAT(errors_of(import_asset(specular_asset({{"diffuseFactor", {1, 1, 1}}}))),
-                HasSubstr("diffuseFactor is not an array of four numbers"));
-    EXPECT_THAT(errors_of(import_asset(specular_asset({{"specularFactor", 1}}))),
-                HasSubstr("specularFactor is not an array of three numbers"));
-    EXPECT_THAT(errors_of(import_asset(specular_asset({{"diffuseTexture", {{"index", 5u}}}}))),
-                HasSubstr("texture 5 does not exist"));
-    EXPECT_THAT(errors_of(import_asset(specular_asset(3))), HasSubstr("it is not an object"));
+    const std::string at = std::string("/materials/0/extensions/") + kSpecularGlossiness;
+    expect_faults(
+        specular_asset(Json::object()),
+        {{at + "/diffuseFactor", {1, 1, 1}, "diffuseFactor is not an array of four numbers"},
+         {at + "/specularFactor", 1, "specularFactor is not an array of three numbers"},
+         {at + "/diffuseTexture/index", 5u, "texture 5 does not exist"},
+         {at, 3, "is not an object"}});
 }
 
 }  // namespace
