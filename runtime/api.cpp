@@ -48,16 +48,12 @@ opaline_status make_asset(std::span<const std::byte> bytes, formats::Checks chec
                           const formats::Memory& memory, opaline_asset** out) {
     using runtime::api::fail;
     formats::Result<formats::LoadedAsset> loaded = formats::read_opal(bytes, {}, checks, memory);
-    if (!loaded) {
-        return fail(loaded.error());
-    }
+    if (!loaded) return fail(loaded.error());
     void* const place =
         memory.allocate != nullptr
             ? memory.allocate(memory.user, sizeof(opaline_asset), alignof(opaline_asset))
             : ::operator new(sizeof(opaline_asset), std::nothrow);
-    if (place == nullptr) {
-        return fail(OPALINE_OUT_OF_MEMORY, "not enough memory");
-    }
+    if (place == nullptr) return fail(OPALINE_OUT_OF_MEMORY, "not enough memory");
     *out = new (place) opaline_asset{std::move(*loaded), ++last_asset_id, memory, std::nullopt};
     return OPALINE_OK;
 }
@@ -152,24 +148,21 @@ opaline_status opaline_asset_load(const void* bytes, size_t size, opaline_asset*
 
 opaline_status opaline_asset_load_with(const void* bytes, size_t size,
                                        const opaline_load_options* options, opaline_asset** out) {
-    if (bytes == nullptr || out == nullptr) {
-        return null_argument();
-    }
+    if (bytes == nullptr || out == nullptr) return null_argument();
     if (reinterpret_cast<std::uintptr_t>(bytes) % formats::kSectionAlignment != 0) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the asset's bytes must be aligned to 64 bytes");
+        return invalid("the asset's bytes must be aligned to 64 bytes");
     }
     formats::Checks checks = formats::Checks::full;
     formats::Memory memory;
     if (options != nullptr) {
         if (options->struct_size != sizeof(opaline_load_options)) {
-            return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+            return invalid("struct_size is not one this library knows");
         }
         if ((options->flags & ~std::uint32_t{OPALINE_LOAD_TRUSTED}) != 0) {
-            return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
+            return invalid("unknown flags");
         }
         if ((options->allocate == nullptr) != (options->release == nullptr)) {
-            return fail(OPALINE_INVALID_ARGUMENT,
-                        "an allocator needs both of its functions, or none");
+            return invalid("an allocator needs both of its functions, or none");
         }
         if ((options->flags & OPALINE_LOAD_TRUSTED) != 0) checks = formats::Checks::sizes;
         memory = {options->allocate, options->release, options->user};
@@ -180,14 +173,10 @@ opaline_status opaline_asset_load_with(const void* bytes, size_t size,
 }
 
 opaline_status opaline_asset_load_path(const char* path, opaline_asset** out) {
-    if (path == nullptr || out == nullptr) {
-        return null_argument();
-    }
+    if (path == nullptr || out == nullptr) return null_argument();
     return guarded([&] {
         formats::Result<formats::FileBytes> file = formats::FileBytes::open(path);
-        if (!file) {
-            return fail(file.error());
-        }
+        if (!file) return fail(file.error());
         const opaline_status status = make_asset(file->bytes(), formats::Checks::full, {}, out);
         if (status == OPALINE_OK) {
             (*out)->file = std::move(*file);
@@ -221,14 +210,9 @@ uint32_t opaline_asset_primitive_count(const opaline_asset* asset) {
 
 opaline_status opaline_asset_primitive(const opaline_asset* asset, uint32_t index,
                                        opaline_primitive_info* info) {
-    if (asset == nullptr || info == nullptr) {
-        return null_argument();
-    }
-    if (info->struct_size != sizeof(opaline_primitive_info)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
+    if (const char* const fault = fault_of_output(asset, info)) return invalid(fault);
     if (index >= opaline_asset_primitive_count(asset)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+        return invalid("there is no primitive of that index");
     }
     const formats::PrimitiveRecord& p = asset->loaded.view.primitives[index];
     *info = {sizeof(opaline_primitive_info),
@@ -245,14 +229,9 @@ opaline_status opaline_asset_primitive(const opaline_asset* asset, uint32_t inde
 
 opaline_status opaline_asset_primitive_shading(const opaline_asset* asset, uint32_t index,
                                                opaline_primitive_shading* shading) {
-    if (asset == nullptr || shading == nullptr) {
-        return null_argument();
-    }
-    if (shading->struct_size != sizeof(opaline_primitive_shading)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
+    if (const char* const fault = fault_of_output(asset, shading)) return invalid(fault);
     if (index >= opaline_asset_primitive_count(asset)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+        return invalid("there is no primitive of that index");
     }
     const formats::PrimitiveRecord& p = asset->loaded.view.primitives[index];
     *shading = {sizeof(opaline_primitive_shading), static_cast<std::uint32_t>(p.shading), p.terms,
@@ -275,34 +254,24 @@ opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_lig
 opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_light* light,
                                   uint32_t flags, const float eye[3], uint32_t first,
                                   uint32_t count, float* out_rgb, size_t out_count) {
-    if (asset == nullptr || light == nullptr || out_rgb == nullptr) {
-        return null_argument();
-    }
+    if (asset == nullptr || light == nullptr || out_rgb == nullptr) return null_argument();
     const runtime::Reading reading(light->users);
     if (!reading) return busy();
     const formats::AssetView& view = asset->loaded.view;
-    if (light->n != view.cubemap_size) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the light was made for an asset of another cube map size");
-    }
-    if (light->emitters.size() != view.emitters.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the light was made for an asset of another number of emitters");
+    if (const char* const fault = fault_of_light(*light, view.cubemap_size, view.emitters.size())) {
+        return invalid(fault);
     }
     constexpr std::uint32_t kKnown = OPALINE_SHADE_WITHOUT_BASE_COLOR |
                                      OPALINE_SHADE_WITHOUT_FRESNEL |
                                      OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE |
                                      OPALINE_SHADE_WITHOUT_SPECULAR |
                                      OPALINE_SHADE_WITHOUT_DIFFUSE | OPALINE_SHADE_WITHOUT_EMISSION;
-    if ((flags & ~kKnown) != 0) {
-        return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
-    }
-    if (eye != nullptr &&
-        !(std::isfinite(eye[0]) && std::isfinite(eye[1]) && std::isfinite(eye[2]))) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the eye's coordinates must be finite");
+    if ((flags & ~kKnown) != 0) return invalid("unknown flags");
+    if (eye != nullptr && !is_finite(eye, 3)) {
+        return invalid("the eye's coordinates must be finite");
     }
     if (first > view.receivers() || count > view.receivers() - first) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the range goes past the last receiver");
+        return invalid("the range goes past the last receiver");
     }
     if (out_count / 3 < count) {
         return fail(OPALINE_BUFFER_TOO_SMALL, "the result needs three floats per receiver");
@@ -314,16 +283,16 @@ opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_ligh
     options.emitters = {light->emitters, (flags & OPALINE_SHADE_WITHOUT_EMISSION) == 0};
     if (has_any(options.terms, formats::TermSet::specular) && options.fresnel) {
         if (!is_prefiltered_for(*light, view)) {
-            return fail(OPALINE_INVALID_ARGUMENT,
-                        "the light was made for an asset of other roughnesses: make one for this "
-                        "asset, or leave out specular reflection");
+            return invalid(
+                "the light was made for an asset of other roughnesses: make one for this "
+                "asset, or leave out specular reflection");
         }
         options.specular = &light->specular();
     }
     if (runtime::find_merged(view, options.terms) != view.primitives.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "multiple and single scattering share their rows in this asset: show both or "
-                    "none, or bake it with --separate-terms");
+        return invalid(
+            "multiple and single scattering share their rows in this asset: show both or "
+            "none, or bake it with --separate-terms");
     }
     if (eye != nullptr) {
         options.eye = formats::Vec3{eye[0], eye[1], eye[2]};

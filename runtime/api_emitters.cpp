@@ -1,5 +1,3 @@
-#include <cmath>
-
 #include "runtime/api_support.h"
 
 namespace formats = opaline::formats;
@@ -13,16 +11,9 @@ uint32_t opaline_asset_emitter_count(const opaline_asset* asset) {
 
 opaline_status opaline_asset_emitter(const opaline_asset* asset, uint32_t index,
                                      opaline_emitter_info* info) {
-    if (asset == nullptr || info == nullptr) {
-        return null_argument();
-    }
-    if (info->struct_size != sizeof(opaline_emitter_info)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
+    if (const char* const fault = fault_of_output(asset, info)) return invalid(fault);
     const formats::EmittersView& emitters = asset->loaded.view.emitters;
-    if (index >= emitters.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no emitter of that index");
-    }
+    if (index >= emitters.size()) return invalid("there is no emitter of that index");
     static_assert(sizeof info->name > formats::kMaxEmitterName);
     *info = {sizeof(opaline_emitter_info), {}};
     emitters.name(index).copy(info->name, formats::kMaxEmitterName);
@@ -31,14 +22,9 @@ opaline_status opaline_asset_emitter(const opaline_asset* asset, uint32_t index,
 
 opaline_status opaline_asset_primitive_emission(const opaline_asset* asset, uint32_t index,
                                                 opaline_primitive_emission* emission) {
-    if (asset == nullptr || emission == nullptr) {
-        return null_argument();
-    }
-    if (emission->struct_size != sizeof(opaline_primitive_emission)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
+    if (const char* const fault = fault_of_output(asset, emission)) return invalid(fault);
     if (index >= opaline_asset_primitive_count(asset)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
+        return invalid("there is no primitive of that index");
     }
     const formats::OwnLight* const own = asset->loaded.view.emitters.own_of(index);
     const formats::Rgb radiance = own == nullptr ? formats::Rgb{} : own->radiance;
@@ -50,17 +36,11 @@ opaline_status opaline_asset_primitive_emission(const opaline_asset* asset, uint
 
 opaline_status opaline_light_set_emitter(opaline_light* light, uint32_t index,
                                          const float color[3]) {
-    if (light == nullptr || color == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr || color == nullptr) return null_argument();
     if (index >= light->emitters.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the light's asset has no emitter of that index");
+        return invalid("the light's asset has no emitter of that index");
     }
-    for (int band = 0; band < 3; ++band) {
-        if (!(color[band] >= 0.0f && std::isfinite(color[band]))) {
-            return fail(OPALINE_INVALID_ARGUMENT, "a colour must be finite and not negative");
-        }
-    }
+    if (!is_radiance(color, 3)) return invalid("a colour must be finite and not negative");
     const opaline::runtime::Writing writing(light->users);
     if (!writing) return busy();
     light->emitters[index] = {color[0], color[1], color[2]};

@@ -36,9 +36,9 @@ formats::DistantDisc sun_of(const float direction[3], float angular_radius,
 std::optional<Rotation> rotation_of(const float m[9]) {
     const Rotation rotation{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}};
     if (is_rotation(rotation, 1e-3f)) return rotation;
-    fail(OPALINE_INVALID_ARGUMENT,
-         "the matrix is not a rotation: its columns must be orthonormal to 1e-3, its "
-         "determinant +1");
+    invalid(
+        "the matrix is not a rotation: its columns must be orthonormal to 1e-3, its "
+        "determinant +1");
     return std::nullopt;
 }
 
@@ -60,9 +60,7 @@ opaline_status change(opaline_light& light, const Work& work) {
 opaline_status set_map(opaline_light& light, const float* rgb, formats::Environment::Layout layout,
                        std::uint32_t width, std::uint32_t height) {
     const std::size_t pixels = std::size_t{width} * height;
-    if (!is_radiance(rgb, 3 * pixels)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "radiance must be finite and not negative");
-    }
+    if (!is_radiance(rgb, 3 * pixels)) return invalid("radiance must be finite and not negative");
     return change(light, [&] {
         formats::Environment map;
         map.layout = layout;
@@ -76,16 +74,10 @@ opaline_status set_map(opaline_light& light, const float* rgb, formats::Environm
 }
 
 opaline_status rotate(opaline_light* light, const float* m, runtime::MapSampling sampling) {
-    if (light == nullptr || m == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr || m == nullptr) return null_argument();
     const auto rotation = rotation_of(m);
     if (!rotation) return OPALINE_INVALID_ARGUMENT;
     return change(*light, [&] { light->distant.turn(*rotation, sampling, light->threads); });
-}
-
-bool is_finite(const float* values, std::size_t count) {
-    return std::all_of(values, values + count, [](float x) { return std::isfinite(x); });
 }
 
 }  // namespace
@@ -93,9 +85,7 @@ bool is_finite(const float* values, std::size_t count) {
 extern "C" {
 
 opaline_status opaline_light_create(const opaline_asset* asset, opaline_light** out) {
-    if (asset == nullptr || out == nullptr) {
-        return null_argument();
-    }
+    if (asset == nullptr || out == nullptr) return null_argument();
     return guarded([&] {
         const formats::AssetView& view = asset->loaded.view;
         auto light =
@@ -111,12 +101,8 @@ void opaline_light_release(opaline_light* light) {
 }
 
 opaline_status opaline_light_set_threads(opaline_light* light, uint32_t threads) {
-    if (light == nullptr) {
-        return null_argument();
-    }
-    if (threads > runtime::kMaxThreads) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there may be 256 threads at most");
-    }
+    if (light == nullptr) return null_argument();
+    if (threads > runtime::kMaxThreads) return invalid(kTooManyThreads);
     return change(*light, [&] { light->threads = threads; });
 }
 
@@ -129,34 +115,24 @@ opaline_status opaline_light_turn(opaline_light* light, const float world_from_l
 }
 
 opaline_status opaline_light_set_cubemap(opaline_light* light, const float* rgb, uint32_t size) {
-    if (light == nullptr || rgb == nullptr) {
-        return null_argument();
-    }
-    if (size < 1 || size > 8192) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the cube map's size must be 1 ... 8192");
-    }
+    if (light == nullptr || rgb == nullptr) return null_argument();
+    if (size < 1 || size > 8192) return invalid("the cube map's size must be 1 ... 8192");
     return set_map(*light, rgb, formats::Environment::Layout::cube, size,
                    size * formats::kCubeFaces);
 }
 
 opaline_status opaline_light_set_lat_long(opaline_light* light, const float* rgb, uint32_t width,
                                           uint32_t height) {
-    if (light == nullptr || rgb == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr || rgb == nullptr) return null_argument();
     if (width < 1 || width > 32768 || height < 1 || height > 32768) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the map's width and height must be 1 ... 32768");
+        return invalid("the map's width and height must be 1 ... 32768");
     }
     return set_map(*light, rgb, formats::Environment::Layout::lat_long, width, height);
 }
 
 opaline_status opaline_light_set_harmonics(opaline_light* light, const float rgb[27]) {
-    if (light == nullptr || rgb == nullptr) {
-        return null_argument();
-    }
-    if (!is_finite(rgb, 27)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "coefficients must be finite");
-    }
+    if (light == nullptr || rgb == nullptr) return null_argument();
+    if (!is_finite(rgb, 27)) return invalid("coefficients must be finite");
     runtime::Harmonics harmonics;
     for (std::size_t k = 0; k < harmonics.size(); ++k) {
         harmonics[k] = {rgb[3 * k], rgb[3 * k + 1], rgb[3 * k + 2]};
@@ -166,26 +142,20 @@ opaline_status opaline_light_set_harmonics(opaline_light* light, const float rgb
 
 opaline_status opaline_light_set_coefficients(opaline_light* light, const float* rgb,
                                               size_t count) {
-    if (light == nullptr || rgb == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr || rgb == nullptr) return null_argument();
     if (count != std::size_t{3} * formats::cubemap_texels(light->n)) {
         return fail(count < std::size_t{3} * formats::cubemap_texels(light->n)
                         ? OPALINE_BUFFER_TOO_SMALL
                         : OPALINE_INVALID_ARGUMENT,
                     "the basis has 6 * size * size coefficients, of three floats each");
     }
-    if (!is_finite(rgb, count)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "coefficients must be finite");
-    }
+    if (!is_finite(rgb, count)) return invalid("coefficients must be finite");
     return change(*light, [&] { light->distant.set_coefficients({rgb, count}, light->threads); });
 }
 
 opaline_status opaline_light_get_coefficients(const opaline_light* light, float* out_rgb,
                                               size_t out_count) {
-    if (light == nullptr || out_rgb == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr || out_rgb == nullptr) return null_argument();
     const std::size_t coefficients = formats::cubemap_texels(light->n);
     if (out_count < 3 * coefficients) {
         return fail(OPALINE_BUFFER_TOO_SMALL,
@@ -201,11 +171,9 @@ opaline_status opaline_light_get_coefficients(const opaline_light* light, float*
 
 opaline_status opaline_light_add_sun(opaline_light* light, const float direction[3],
                                      float angular_radius, const float radiance[3]) {
-    if (light == nullptr || direction == nullptr || radiance == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr || direction == nullptr || radiance == nullptr) return null_argument();
     if (const char* fault = fault_of_sun(direction, angular_radius, radiance)) {
-        return fail(OPALINE_INVALID_ARGUMENT, fault);
+        return invalid(fault);
     }
     return change(*light, [&] {
         light->distant.add_sun(sun_of(direction, angular_radius, radiance), light->threads);
@@ -214,11 +182,9 @@ opaline_status opaline_light_add_sun(opaline_light* light, const float direction
 
 opaline_status opaline_light_set_sun(opaline_light* light, uint32_t index, const float direction[3],
                                      float angular_radius, const float radiance[3]) {
-    if (light == nullptr || direction == nullptr || radiance == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr || direction == nullptr || radiance == nullptr) return null_argument();
     if (const char* fault = fault_of_sun(direction, angular_radius, radiance)) {
-        return fail(OPALINE_INVALID_ARGUMENT, fault);
+        return invalid(fault);
     }
     bool exists = false;
     const opaline_status status = change(*light, [&] {
@@ -226,15 +192,11 @@ opaline_status opaline_light_set_sun(opaline_light* light, uint32_t index, const
         if (!exists) return;
         light->distant.set_sun(index, sun_of(direction, angular_radius, radiance), light->threads);
     });
-    return status != OPALINE_OK || exists
-               ? status
-               : fail(OPALINE_INVALID_ARGUMENT, "the light has no sun of that index");
+    return status != OPALINE_OK || exists ? status : invalid("the light has no sun of that index");
 }
 
 opaline_status opaline_light_clear(opaline_light* light) {
-    if (light == nullptr) {
-        return null_argument();
-    }
+    if (light == nullptr) return null_argument();
     return change(*light, [&] { light->distant.clear(light->threads); });
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <optional>
@@ -79,9 +81,36 @@ opaline_status guarded(const Work& work) noexcept {
     }
 }
 
-inline opaline_status null_argument() {
-    return fail(OPALINE_INVALID_ARGUMENT, "an argument is NULL");
+inline opaline_status invalid(const char* text) {
+    return fail(OPALINE_INVALID_ARGUMENT, text);
 }
+
+inline opaline_status null_argument() {
+    return invalid("an argument is NULL");
+}
+
+/// What is wrong with a call that fills a struct of the caller's, or nothing.
+template <class Handle, class Struct>
+const char* fault_of_output(const Handle* handle, const Struct* out) {
+    if (handle == nullptr || out == nullptr) return "an argument is NULL";
+    return out->struct_size == sizeof(Struct) ? nullptr
+                                              : "struct_size is not one this library knows";
+}
+
+/// Why a light is not of an asset of that cube map size and number of emitters, or nothing.
+inline const char* fault_of_light(const opaline_light& light, std::uint32_t n,
+                                  std::size_t emitters) {
+    if (light.n != n) return "the light was made for an asset of another cube map size";
+    return light.emitters.size() == emitters
+               ? nullptr
+               : "the light was made for an asset of another number of emitters";
+}
+
+inline bool is_finite(const float* values, std::size_t count) {
+    return std::all_of(values, values + count, [](float x) { return std::isfinite(x); });
+}
+
+inline constexpr char kTooManyThreads[] = "there may be 256 threads at most";
 
 inline opaline_status busy() {
     return fail(OPALINE_BUSY,

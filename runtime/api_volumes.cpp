@@ -16,10 +16,6 @@ namespace {
 
 constexpr std::uint32_t kRaysAtOnce = 64;  // for a thread: as wide as a row of a tile of pixels
 
-bool is_finite(const float p[3]) {
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
-}
-
 formats::Vec3 point(const float p[3]) {
     return {p[0], p[1], p[2]};
 }
@@ -32,19 +28,12 @@ formats::Vec3 direction(const float d[3]) {
 opaline_status fail_at(const char* what, std::uint32_t index, const char* fault) {
     char text[128];
     std::snprintf(text, sizeof text, "%s %lu: %s", what, static_cast<unsigned long>(index), fault);
-    return fail(OPALINE_INVALID_ARGUMENT, text);
-}
-
-opaline_status check_threads(std::uint32_t threads) {
-    return threads > runtime::kMaxThreads
-               ? fail(OPALINE_INVALID_ARGUMENT, "there may be 256 threads at most")
-               : OPALINE_OK;
+    return invalid(text);
 }
 
 opaline_status check_pair(const opaline_asset& asset, const opaline_volume_light& volume_light) {
     return asset.id != volume_light.asset_id
-               ? fail(OPALINE_INVALID_ARGUMENT,
-                      "the volume light was made for another asset: make one for this handle")
+               ? invalid("the volume light was made for another asset: make one for this handle")
                : OPALINE_OK;
 }
 
@@ -58,21 +47,21 @@ formats::TermSet volume_terms_of(std::uint32_t flags) {
 
 opaline_status check_options(const opaline_march_options& options) {
     if (options.struct_size != sizeof(opaline_march_options)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+        return invalid("struct_size is not one this library knows");
     }
     if (!(options.step >= 1.0f / 64 && options.step <= 8)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the step must be 1/64 ... 8 voxels");
+        return invalid("the step must be 1/64 ... 8 voxels");
     }
     if (!(options.least_transmittance >= 0 && options.least_transmittance < 1)) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the least transmittance must not be negative, and below 1");
+        return invalid("the least transmittance must not be negative, and below 1");
     }
-    return check_threads(options.threads);
+    if (options.threads > runtime::kMaxThreads) return invalid(kTooManyThreads);
+    return OPALINE_OK;
 }
 
 // What is wrong with a ray; nullptr if nothing is.
 const char* ray_fault(const opaline_march_ray& ray) {
-    if (!is_finite(ray.origin)) return "the origin must be finite";
+    if (!is_finite(ray.origin, 3)) return "the origin must be finite";
     if (!unit_vector(ray.direction)) return "the direction must be finite and not zero";
     if (!(ray.begin >= 0) || !std::isfinite(ray.begin)) {
         return "the begin must be finite and not negative";
@@ -81,7 +70,7 @@ const char* ray_fault(const opaline_march_ray& ray) {
 }
 
 const char* point_fault(const opaline_sample_point& point) {
-    if (!is_finite(point.position)) return "the position must be finite";
+    if (!is_finite(point.position, 3)) return "the position must be finite";
     return unit_vector(point.to_eye) ? nullptr
                                      : "the direction to the eye must be finite and not zero";
 }
@@ -103,14 +92,9 @@ uint32_t opaline_asset_volume_count(const opaline_asset* asset) {
 
 opaline_status opaline_asset_volume(const opaline_asset* asset, uint32_t index,
                                     opaline_volume_info* info) {
-    if (asset == nullptr || info == nullptr) {
-        return null_argument();
-    }
-    if (info->struct_size != sizeof(opaline_volume_info)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
+    if (const char* const fault = fault_of_output(asset, info)) return invalid(fault);
     if (index >= opaline_asset_volume_count(asset)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no volume of that index");
+        return invalid("there is no volume of that index");
     }
     return guarded([&] {
         const formats::VolumesView& volumes = asset->loaded.view.volumes;
@@ -132,9 +116,7 @@ opaline_status opaline_asset_volume(const opaline_asset* asset, uint32_t index,
 }
 
 opaline_status opaline_volume_light_create(const opaline_asset* asset, opaline_volume_light** out) {
-    if (asset == nullptr || out == nullptr) {
-        return null_argument();
-    }
+    if (asset == nullptr || out == nullptr) return null_argument();
     return guarded([&] {
         const formats::VolumesView& volumes = asset->loaded.view.volumes;
         auto created = std::make_unique<opaline_volume_light>();
@@ -155,31 +137,19 @@ void opaline_volume_light_release(opaline_volume_light* volume_light) {
 opaline_status opaline_volume_light_update(opaline_volume_light* volume_light,
                                            const opaline_asset* asset, const opaline_light* light,
                                            uint32_t flags, uint32_t threads) {
-    if (volume_light == nullptr || asset == nullptr || light == nullptr) {
-        return null_argument();
-    }
+    if (volume_light == nullptr || asset == nullptr || light == nullptr) return null_argument();
     const runtime::Writing writing(volume_light->users);
     const runtime::Reading reading(light->users);
     if (!writing || !reading) return busy();
-    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
-        return status;
-    }
-    if (light->n != asset->loaded.view.cubemap_size) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the light was made for an asset of another cube map size");
-    }
-    if (light->emitters.size() != asset->loaded.view.emitters.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the light was made for an asset of another number of emitters");
+    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) return status;
+    if (const char* const fault = fault_of_light(*light, asset->loaded.view.cubemap_size,
+                                                 asset->loaded.view.emitters.size())) {
+        return invalid(fault);
     }
     constexpr std::uint32_t kKnown = OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE |
                                      OPALINE_SHADE_WITHOUT_EMISSION;
-    if ((flags & ~kKnown) != 0) {
-        return fail(OPALINE_INVALID_ARGUMENT, "flags that volumes do not have");
-    }
-    if (const auto status = check_threads(threads); status != OPALINE_OK) {
-        return status;
-    }
+    if ((flags & ~kKnown) != 0) return invalid("flags that volumes do not have");
+    if (threads > runtime::kMaxThreads) return invalid(kTooManyThreads);
     return guarded([&] {
         // In place, so that volume_light->lit goes on referring to it.
         const bool shows_own = (flags & OPALINE_SHADE_WITHOUT_EMISSION) == 0;
@@ -202,23 +172,17 @@ opaline_status opaline_volumes_march(const opaline_asset* asset,
     }
     const runtime::Reading reading(volume_light->users);
     if (!reading) return busy();
-    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
-        return status;
-    }
+    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) return status;
     runtime::MarchOptions march;
     unsigned threads = 1;
     if (options != nullptr) {
-        if (const auto status = check_options(*options); status != OPALINE_OK) {
-            return status;
-        }
+        if (const auto status = check_options(*options); status != OPALINE_OK) return status;
         march.step = options->step;
         march.least_transmittance = options->least_transmittance;
         threads = options->threads;
     }
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (const char* const fault = ray_fault(rays[i])) {
-            return fail_at("ray", i, fault);
-        }
+        if (const char* const fault = ray_fault(rays[i])) return fail_at("ray", i, fault);
     }
     return guarded([&] {
         // Apart, because memory may run out half-way.
@@ -252,13 +216,9 @@ opaline_status opaline_volumes_sample(const opaline_asset* asset,
     }
     const runtime::Reading reading(volume_light->users);
     if (!reading) return busy();
-    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) {
-        return status;
-    }
+    if (const auto status = check_pair(*asset, *volume_light); status != OPALINE_OK) return status;
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (const char* const fault = point_fault(points[i])) {
-            return fail_at("point", i, fault);
-        }
+        if (const char* const fault = point_fault(points[i])) return fail_at("point", i, fault);
     }
     for (std::uint32_t i = 0; i < count; ++i) {
         const runtime::VolumeSample sample = runtime::sample_volumes(

@@ -47,9 +47,7 @@ void dot_scalar(const TypedRows<Index, Code>& rows, const LightVector& light, st
 
 DotPath best_dot_path() {
     const VectorUnits units = find_vector_units();
-    if (units.avx512 && units.fma) {
-        return DotPath::avx512;
-    }
+    if (units.avx512 && units.fma) return DotPath::avx512;
     return units.avx2 && units.fma ? DotPath::avx2 : DotPath::scalar;
 }
 

@@ -203,9 +203,7 @@ std::vector<BrightPixel> take_bright_pixels(Environment& map) {
     for (std::uint32_t row = 0; row < map.height; ++row) {
         for (std::uint32_t column = 0; column < map.width; ++column) {
             const Rgb p = map.pixel[std::size_t{row} * map.width + column];
-            if (p.r <= floor.r && p.g <= floor.g && p.b <= floor.b) {
-                continue;
-            }
+            if (p.r <= floor.r && p.g <= floor.g && p.b <= floor.b) continue;
             const Rgb around = kTimesSurroundings * surroundings(map, column, row);
             const Rgb most{std::max(floor.r, around.r), std::max(floor.g, around.g),
                            std::max(floor.b, around.b)};
@@ -255,9 +253,7 @@ void append_shares(std::span<const Point> points, double solid_angle, Rgb radian
 void project_small_sources(const Environment& shape, std::span<const BrightPixel> bright,
                            std::uint32_t n, const Rotation& rotation, unsigned threads,
                            std::span<double> integral) {
-    if (bright.empty()) {
-        return;
-    }
+    if (bright.empty()) return;
     const bool cube = shape.layout == Environment::Layout::cube;
     const std::vector<double> edges = cube ? std::vector<double>{} : row_edges(shape);
     // Four halvings leave pieces of 1/16 pixel at the border between texels: finer than the grid of

@@ -71,9 +71,7 @@ Environment reduce_lat_long(const Environment& map, std::uint32_t max_width,
                             std::uint32_t max_height, unsigned threads) {
     Environment out = map;
     out.discs.clear();
-    if (map.width <= max_width && map.height <= max_height) {
-        return out;
-    }
+    if (map.width <= max_width && map.height <= max_height) return out;
     out.width = std::min(map.width, max_width);
     out.height = std::min(map.height, max_height);
     out.rows_include_poles = false;
@@ -102,9 +100,7 @@ Environment reduce_lat_long(const Environment& map, std::uint32_t max_width,
 Environment reduce_cube(const Environment& map, std::uint32_t max_size, unsigned threads) {
     Environment out = map;
     out.discs.clear();
-    if (map.width <= max_size) {
-        return out;
-    }
+    if (map.width <= max_size) return out;
     const std::uint32_t n = max_size, old_n = map.width;
     out.width = n;
     out.height = formats::kCubeFaces * n;

@@ -98,9 +98,7 @@ Rgb sample_image_values(const formats::PreviewImage& image, formats::Float2 uv, 
 Rgb vertex_base_color(const formats::AssetView& asset, const formats::PrimitiveRecord& primitive,
                       std::uint32_t vertex) {
     const Rgb color = asset.base_color[vertex];
-    if (primitive.base_color_image == formats::kNoImage) {
-        return color;
-    }
+    if (primitive.base_color_image == formats::kNoImage) return color;
     return color * sample_image_linear(asset.images[primitive.base_color_image],
                                        asset.texcoord[vertex], primitive.wrap_u, primitive.wrap_v);
 }

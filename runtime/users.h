@@ -32,14 +32,15 @@ class Users {
     std::atomic<int> count_{0};  // readers, or kWriter
 };
 
-/// Reads as long as it lives, if it may.
-class Reading {
+/// Uses a handle as long as it lives, if it may.
+template <bool (Users::*kEnter)(), void (Users::*kLeave)()>
+class Using {
   public:
-    explicit Reading(Users& users) : users_(users), entered_(users.enter_as_reader()) {}
-    Reading(const Reading&) = delete;
-    Reading& operator=(const Reading&) = delete;
-    ~Reading() {
-        if (entered_) users_.leave_as_reader();
+    explicit Using(Users& users) : users_(users), entered_((users.*kEnter)()) {}
+    Using(const Using&) = delete;
+    Using& operator=(const Using&) = delete;
+    ~Using() {
+        if (entered_) (users_.*kLeave)();
     }
     explicit operator bool() const { return entered_; }
 
@@ -47,20 +48,7 @@ class Reading {
     Users& users_;
     bool entered_;
 };
-
-class Writing {
-  public:
-    explicit Writing(Users& users) : users_(users), entered_(users.enter_as_writer()) {}
-    Writing(const Writing&) = delete;
-    Writing& operator=(const Writing&) = delete;
-    ~Writing() {
-        if (entered_) users_.leave_as_writer();
-    }
-    explicit operator bool() const { return entered_; }
-
-  private:
-    Users& users_;
-    bool entered_;
-};
+using Reading = Using<&Users::enter_as_reader, &Users::leave_as_reader>;
+using Writing = Using<&Users::enter_as_writer, &Users::leave_as_writer>;
 
 }  // namespace opaline::runtime

@@ -18,9 +18,7 @@ VectorUnits ask_processor() {
     constexpr std::uint32_t kKeepsYmm = 1u << 1 | 1u << 2;                       // XCR0
     constexpr std::uint32_t kKeepsZmm = kKeepsYmm | 1u << 5 | 1u << 6 | 1u << 7;
     std::uint32_t a = 0, b = 0, c = 0, d = 0;
-    if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & kSavesState) == 0) {
-        return units;
-    }
+    if (__get_cpuid(1, &a, &b, &c, &d) == 0 || (c & kSavesState) == 0) return units;
     const bool has_fma = (c & kFma) != 0;
     std::uint32_t kept = 0, above = 0;
     __asm__ volatile("xgetbv" : "=a"(kept), "=d"(above) : "c"(0));

@@ -52,9 +52,7 @@ Vec3 refract_to_eye(Vec3 n, Vec3 w, float c, float eta) {
         c = 0;
     }
     const float squared = scaled_cosine_behind_squared(c, eta);
-    if (squared > 0) {
-        return (1 / eta) * (tangent + std::sqrt(squared) * n);
-    }
+    if (squared > 0) return (1 / eta) * (tangent + std::sqrt(squared) * n);
     const float norm = length(tangent);
     return norm > 0 ? (1 / norm) * tangent : n;
 }

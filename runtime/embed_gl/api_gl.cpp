@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -131,21 +130,15 @@ extern "C" {
 
 opaline_status opaline_gl_create(const opaline_asset* asset, opaline_gl_loader loader,
                                  uint32_t flags, opaline_gl** out) {
-    if (asset == nullptr || out == nullptr) {
-        return null_argument();
-    }
+    if (asset == nullptr || out == nullptr) return null_argument();
     constexpr std::uint32_t kKnown = OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_TEXTURE |
                                      OPALINE_GL_WITH_VOLUMES | OPALINE_GL_WITH_IMAGES;
-    if ((flags & ~kKnown) != 0) {
-        return fail(OPALINE_INVALID_ARGUMENT, "unknown flags");
-    }
+    if ((flags & ~kKnown) != 0) return invalid("unknown flags");
     return guarded([&] {
         auto handle = std::make_unique<opaline_gl>();
         handle->asset_id = asset->id;
         const opaline_status loaded = runtime::load_gl_functions(loader, handle->gl);
-        if (loaded != OPALINE_OK) {
-            return loaded;
-        }
+        if (loaded != OPALINE_OK) return loaded;
         if (handle->gl.GetGraphicsResetStatus != nullptr &&
             handle->gl.GetGraphicsResetStatus() != GL_NO_ERROR) {
             return lost_context();
@@ -164,9 +157,7 @@ opaline_status opaline_gl_create(const opaline_asset* asset, opaline_gl_loader l
 }
 
 opaline_status opaline_gl_release(opaline_gl* gl) {
-    if (gl == nullptr) {
-        return OPALINE_OK;
-    }
+    if (gl == nullptr) return OPALINE_OK;
     const std::unique_ptr<opaline_gl> handle(gl);
     const opaline_status status = check_context(*handle);
     if (status == OPALINE_OK) {
@@ -176,23 +167,14 @@ opaline_status opaline_gl_release(opaline_gl* gl) {
 }
 
 opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
-    if (gl == nullptr || light == nullptr) {
-        return null_argument();
-    }
+    if (gl == nullptr || light == nullptr) return null_argument();
     const runtime::Reading reading(light->users);
     if (!reading) return busy();
-    if (light->n != gl->cubemap_size) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the light was made for an asset of another cube map size");
-    }
-    if (light->emitters.size() != gl->emitters) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the light was made for an asset of another number of emitters");
+    if (const char* const fault = fault_of_light(*light, gl->cubemap_size, gl->emitters)) {
+        return invalid(fault);
     }
     const opaline_status status = check_context(*gl);
-    if (status != OPALINE_OK) {
-        return status;
-    }
+    if (status != OPALINE_OK) return status;
     return guarded([&] {
         const runtime::SavedState saved(gl->gl);
         gl->relight.light(light->vector(), gl->names);
@@ -206,22 +188,15 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
 }
 
 opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]) {
-    if (gl == nullptr) {
-        return null_argument();
-    }
-    if (eye != nullptr &&
-        !(std::isfinite(eye[0]) && std::isfinite(eye[1]) && std::isfinite(eye[2]))) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the eye's coordinates must be finite");
+    if (gl == nullptr) return null_argument();
+    if (eye != nullptr && !is_finite(eye, 3)) {
+        return invalid("the eye's coordinates must be finite");
     }
     const opaline_status status = check_context(*gl);
-    if (status != OPALINE_OK) {
-        return status;
-    }
+    if (status != OPALINE_OK) return status;
     gl->eye = eye == nullptr ? std::nullopt : std::optional(Vec3{eye[0], eye[1], eye[2]});
     const bool are_receivers_seen = gl->is_relit && gl->relight.needs_eye();
-    if (!are_receivers_seen && gl->volumes.size() == 0 && !gl->layer.is_shown()) {
-        return OPALINE_OK;
-    }
+    if (!are_receivers_seen && gl->volumes.size() == 0 && !gl->layer.is_shown()) return OPALINE_OK;
     const runtime::SavedState saved(gl->gl);
     gl->volumes.look_from(gl->eye.value_or(Vec3{}));
     gl->layer.look_from(gl->eye.value_or(Vec3{}));
@@ -230,27 +205,15 @@ opaline_status opaline_gl_look_from(opaline_gl* gl, const float eye[3]) {
 }
 
 opaline_status opaline_gl_get_objects(const opaline_gl* gl, opaline_gl_objects* objects) {
-    if (gl == nullptr || objects == nullptr) {
-        return null_argument();
-    }
-    if (objects->struct_size != sizeof(opaline_gl_objects)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
+    if (const char* const fault = fault_of_output(gl, objects)) return invalid(fault);
     *objects = gl->objects;
     return OPALINE_OK;
 }
 
 opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
                                       opaline_gl_surface* surface) {
-    if (gl == nullptr || surface == nullptr) {
-        return null_argument();
-    }
-    if (surface->struct_size != sizeof(opaline_gl_surface)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
-    if (primitive >= gl->primitives.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
-    }
+    if (const char* const fault = fault_of_output(gl, surface)) return invalid(fault);
+    if (primitive >= gl->primitives.size()) return invalid("there is no primitive of that index");
     const formats::PrimitiveRecord& record = gl->primitives[primitive];
     const runtime::MirroredLight::Lobe lobe = gl->mirrored.lobe_of(primitive);
     const runtime::Rotation& r = gl->mirrored.rotation();
@@ -276,15 +239,8 @@ opaline_status opaline_gl_get_surface(const opaline_gl* gl, uint32_t primitive,
 
 opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t primitive,
                                      opaline_gl_images* images) {
-    if (gl == nullptr || images == nullptr) {
-        return null_argument();
-    }
-    if (images->struct_size != sizeof(opaline_gl_images)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
-    if (primitive >= gl->primitives.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
-    }
+    if (const char* const fault = fault_of_output(gl, images)) return invalid(fault);
+    if (primitive >= gl->primitives.size()) return invalid("there is no primitive of that index");
     *images = gl->images.of(primitive);
     images->struct_size = sizeof(opaline_gl_images);
     return OPALINE_OK;
@@ -292,15 +248,8 @@ opaline_status opaline_gl_get_images(const opaline_gl* gl, uint32_t primitive,
 
 opaline_status opaline_gl_get_normal_map(const opaline_gl* gl, uint32_t primitive,
                                          opaline_gl_normal_map* map) {
-    if (gl == nullptr || map == nullptr) {
-        return null_argument();
-    }
-    if (map->struct_size != sizeof(opaline_gl_normal_map)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
-    if (primitive >= gl->primitives.size()) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there is no primitive of that index");
-    }
+    if (const char* const fault = fault_of_output(gl, map)) return invalid(fault);
+    if (primitive >= gl->primitives.size()) return invalid("there is no primitive of that index");
     *map = gl->images.normal_map_of(primitive);
     map->struct_size = sizeof(opaline_gl_normal_map);
     return OPALINE_OK;

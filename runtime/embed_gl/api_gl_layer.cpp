@@ -20,8 +20,7 @@ using formats::Environment;
 opaline_status check_layer_pair(const opaline_asset& asset,
                                 const opaline_layer_light& layer_light) {
     return asset.id != layer_light.asset_id
-               ? fail(OPALINE_INVALID_ARGUMENT,
-                      "the layer light was made for another asset: make one for this handle")
+               ? invalid("the layer light was made for another asset: make one for this handle")
                : OPALINE_OK;
 }
 
@@ -31,13 +30,13 @@ opaline_status read_map(const opaline_layer_sky& sky, Environment& environment) 
     if (sky.is_cubemap > 1 || sky.width < 1 || sky.height < 1 ||
         sky.width > (is_cube ? 8192u : 32768u) || sky.height > 6u * 8192u ||
         (is_cube ? sky.height != formats::kCubeFaces * sky.width : sky.height > 32768u)) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the map must have 1 ... 32768 pixels a side; a cube map six faces of 1 ... "
-                    "8192, below each other");
+        return invalid(
+            "the map must have 1 ... 32768 pixels a side; a cube map six faces of 1 ... "
+            "8192, below each other");
     }
     const std::size_t pixels = std::size_t{sky.width} * sky.height;
     if (!is_radiance(sky.map, 3 * pixels)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "radiance must be finite and not negative");
+        return invalid("radiance must be finite and not negative");
     }
     environment.layout = is_cube ? Environment::Layout::cube : Environment::Layout::lat_long;
     environment.width = sky.width;
@@ -50,15 +49,15 @@ opaline_status read_map(const opaline_layer_sky& sky, Environment& environment) 
 opaline_status read_sky(const opaline_layer_sky& sky, Environment& environment,
                         runtime::Rotation& rotation) {
     if (sky.struct_size != sizeof(opaline_layer_sky)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+        return invalid("struct_size is not one this library knows");
     }
-    if (!std::isfinite(sky.time)) return fail(OPALINE_INVALID_ARGUMENT, "the time must be finite");
+    if (!std::isfinite(sky.time)) return invalid("the time must be finite");
     if (sky.sun_count > 0 && sky.suns == nullptr) return null_argument();
     for (std::uint32_t i = 0; i < sky.sun_count; ++i) {
         const opaline_layer_sun& sun = sky.suns[i];
         if (const char* const fault =
                 fault_of_sun(sun.direction, sun.angular_radius, sun.radiance)) {
-            return fail(OPALINE_INVALID_ARGUMENT, fault);
+            return invalid(fault);
         }
         environment.discs.push_back(sun_of(sun.direction, sun.angular_radius, sun.radiance));
     }
@@ -80,12 +79,8 @@ uint32_t opaline_asset_layer_count(const opaline_asset* asset) {
 }
 
 opaline_status opaline_layer_light_create(const opaline_asset* asset, opaline_layer_light** out) {
-    if (asset == nullptr || out == nullptr) {
-        return null_argument();
-    }
-    if (opaline_asset_layer_count(asset) == 0) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the asset has no cloud layer");
-    }
+    if (asset == nullptr || out == nullptr) return null_argument();
+    if (opaline_asset_layer_count(asset) == 0) return invalid("the asset has no cloud layer");
     return guarded([&] {
         auto created = std::make_unique<opaline_layer_light>();
         created->asset_id = asset->id;
@@ -103,17 +98,13 @@ void opaline_layer_light_release(opaline_layer_light* layer_light) {
 opaline_status opaline_layer_light_update(opaline_layer_light* layer_light,
                                           const opaline_asset* asset, const opaline_layer_sky* sky,
                                           uint32_t threads) {
-    if (layer_light == nullptr || asset == nullptr || sky == nullptr) {
-        return null_argument();
-    }
+    if (layer_light == nullptr || asset == nullptr || sky == nullptr) return null_argument();
     const runtime::Writing writing(layer_light->users);
     if (!writing) return busy();
     if (const auto status = check_layer_pair(*asset, *layer_light); status != OPALINE_OK) {
         return status;
     }
-    if (threads > runtime::kMaxThreads) {
-        return fail(OPALINE_INVALID_ARGUMENT, "there may be 256 threads at most");
-    }
+    if (threads > runtime::kMaxThreads) return invalid(kTooManyThreads);
     return guarded([&] {
         Environment environment;
         runtime::Rotation rotation;
@@ -140,9 +131,7 @@ opaline_status opaline_light_set_from_layer(opaline_light* light, const opaline_
     if (const auto status = check_layer_pair(*asset, *layer_light); status != OPALINE_OK) {
         return status;
     }
-    if (!(std::isfinite(point[0]) && std::isfinite(point[1]) && std::isfinite(point[2]))) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the point must be finite");
-    }
+    if (!is_finite(point, 3)) return invalid("the point must be finite");
     return guarded([&] {
         const Environment seen = runtime::environment_at(
             {layer_light->light, layer_light->environment, layer_light->rotation},
@@ -159,20 +148,14 @@ opaline_status opaline_light_set_from_layer(opaline_light* light, const opaline_
 
 opaline_status opaline_gl_show_layer(opaline_gl* gl, const opaline_asset* asset,
                                      const opaline_layer_light* layer_light) {
-    if (gl == nullptr || asset == nullptr || layer_light == nullptr) {
-        return null_argument();
-    }
+    if (gl == nullptr || asset == nullptr || layer_light == nullptr) return null_argument();
     const runtime::Reading reading(layer_light->users);
     if (!reading) return busy();
     if (const auto status = check_layer_pair(*asset, *layer_light); status != OPALINE_OK) {
         return status;
     }
-    if (asset->id != gl->asset_id) {
-        return fail(OPALINE_INVALID_ARGUMENT, "the handle was made of another asset");
-    }
-    if (const opaline_status status = check_context(*gl); status != OPALINE_OK) {
-        return status;
-    }
+    if (asset->id != gl->asset_id) return invalid("the handle was made of another asset");
+    if (const opaline_status status = check_context(*gl); status != OPALINE_OK) return status;
     return guarded([&] {
         const runtime::SavedState saved(gl->gl);
         const opaline_status status =
@@ -183,12 +166,7 @@ opaline_status opaline_gl_show_layer(opaline_gl* gl, const opaline_asset* asset,
 }
 
 opaline_status opaline_gl_get_layer(const opaline_gl* gl, opaline_gl_layer* layer) {
-    if (gl == nullptr || layer == nullptr) {
-        return null_argument();
-    }
-    if (layer->struct_size != sizeof(opaline_gl_layer)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
-    }
+    if (const char* const fault = fault_of_output(gl, layer)) return invalid(fault);
     const runtime::LayerTextures& made = gl->layer;
     *layer = {sizeof(opaline_gl_layer),
               made.kind().repeats ? 1u : 0u,

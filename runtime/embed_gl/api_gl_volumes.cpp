@@ -11,18 +11,13 @@ using namespace opaline::runtime::api;
 extern "C" {
 
 opaline_status opaline_gl_light_volumes(opaline_gl* gl, const opaline_volume_light* volume_light) {
-    if (gl == nullptr || volume_light == nullptr) {
-        return null_argument();
-    }
+    if (gl == nullptr || volume_light == nullptr) return null_argument();
     const runtime::Reading reading(volume_light->users);
     if (!reading) return busy();
     if (volume_light->asset_id != gl->asset_id) {
-        return fail(OPALINE_INVALID_ARGUMENT,
-                    "the volume light was made for another asset: make one for that handle");
+        return invalid("the volume light was made for another asset: make one for that handle");
     }
-    if (const opaline_status status = check_context(*gl); status != OPALINE_OK) {
-        return status;
-    }
+    if (const opaline_status status = check_context(*gl); status != OPALINE_OK) return status;
     return guarded([&] {
         const runtime::SavedState saved(gl->gl);
         if (const opaline_status status = gl->volumes.upload(volume_light->light);
@@ -34,13 +29,11 @@ opaline_status opaline_gl_light_volumes(opaline_gl* gl, const opaline_volume_lig
 }
 
 opaline_status opaline_gl_get_volumes(const opaline_gl* gl, opaline_gl_volumes* volumes) {
-    if (gl == nullptr || volumes == nullptr) {
-        return null_argument();
-    }
+    if (gl == nullptr || volumes == nullptr) return null_argument();
     // Hosts of the first version know nothing of own light.
     const std::size_t size = volumes->struct_size;
     if (size != sizeof(opaline_gl_volumes) && size != offsetof(opaline_gl_volumes, glows)) {
-        return fail(OPALINE_INVALID_ARGUMENT, "struct_size is not one this library knows");
+        return invalid("struct_size is not one this library knows");
     }
     const runtime::VolumeTextures& made = gl->volumes;
     const opaline_gl_volumes found{size,

@@ -126,9 +126,6 @@ formats::Result<EglContext> EglContext::create() {
             const CurrentContext current(made);
             if (current.status()) {
                 made.description_ = gl_text(GL_RENDERER) + ", OpenGL " + gl_text(GL_VERSION);
-                for (const char* name : {"llvmpipe", "softpipe", "SwiftShader"}) {
-                    made.is_software_ |= made.description_.find(name) != std::string::npos;
-                }
                 eglBindAPI(previous_api);
                 return made;
             }
@@ -150,14 +147,12 @@ void* EglContext::load_function(const char* name) {
 EglContext::EglContext(EglContext&& other) noexcept
     : display_(other.display_),
       context_(std::exchange(other.context_, nullptr)),
-      description_(std::move(other.description_)),
-      is_software_(other.is_software_) {}
+      description_(std::move(other.description_)) {}
 
 EglContext& EglContext::operator=(EglContext&& other) noexcept {
     std::swap(display_, other.display_);
     std::swap(context_, other.context_);
     std::swap(description_, other.description_);
-    std::swap(is_software_, other.is_software_);
     return *this;
 }
 

@@ -24,8 +24,6 @@ class EglContext {
 
     /// GL renderer and version, for messages and statistics.
     const std::string& description() const { return description_; }
-    /// True where the driver runs on the CPU.
-    bool is_software() const { return is_software_; }
 
   private:
     friend class CurrentContext;
@@ -33,7 +31,6 @@ class EglContext {
     void* display_ = nullptr;
     void* context_ = nullptr;
     std::string description_;
-    bool is_software_ = false;
 };
 
 /// Makes a context current on this thread for as long as it lives, then restores the previous one.

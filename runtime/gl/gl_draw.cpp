@@ -51,16 +51,10 @@ TileGrid tile_grid(const DrawScene& scene, const Tile& tile) {
 
 // The background is drawn at the depth that the target was cleared to.
 void draw_background(const DrawScene& scene, const DrawPrograms& programs, const TileView& view) {
-    const CameraFrame& frame = view.frame;
-    const TileGrid& grid = view.grid;
     glDepthFunc(GL_EQUAL);
     const GLuint program = programs.background.name();
     glUseProgram(program);
-    glUniform2f(0, grid.first_column, grid.first_row);
-    glUniform2f(1, 2.0f / grid.columns, 2.0f / grid.rows);
-    set_vec3(program, 2, static_cast<float>(frame.tan_half_x) * frame.right);
-    set_vec3(program, 3, static_cast<float>(-frame.tan_half_y) * frame.up);
-    set_vec3(program, 4, -1.0f * frame.backward);
+    set_rays(view, program, 0);
     bind_environment(scene.environment, scene.rotation, program, 5);
     glBindVertexArray(programs.nothing.name());
     glDrawArrays(GL_TRIANGLES, 0, 3);

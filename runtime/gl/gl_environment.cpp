@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "formats/opal/ggx_albedo.h"
-#include "runtime/embed_gl/gloss_tables.h"
+#include "runtime/gloss_tables.h"
 
 namespace opaline::runtime {
 namespace {

@@ -13,12 +13,8 @@ namespace {
 
 // Locations of layers.frag.glsl, and of what comes before it; 5 to 9 are the environment's.
 enum Uniform : GLint {
-    kTileOrigin = 0,
-    kToPlane,
-    kRight,
-    kDown,
-    kForward,
-    kEnvironment,
+    kTileOrigin = 0,  // set_rays
+    kEnvironment = 5,
     kFieldOrigin = 10,
     kEyeAboveBase,
     kSpread,
@@ -52,19 +48,6 @@ void bind_layer(const DrawScene& scene) {
     }
 }
 
-// What the two programs of pixels have in common.
-void set_rays(const GlProgram& program, const TileView& view) {
-    const CameraFrame& frame = view.frame;
-    const TileGrid& grid = view.grid;
-    const GLuint name = program.name();
-    glUseProgram(name);
-    glUniform2f(kTileOrigin, grid.first_column, grid.first_row);
-    glUniform2f(kToPlane, 2.0f / grid.columns, 2.0f / grid.rows);
-    set_vec3(name, kRight, static_cast<float>(frame.tan_half_x) * frame.right);
-    set_vec3(name, kDown, static_cast<float>(-frame.tan_half_y) * frame.up);
-    set_vec3(name, kForward, -1.0f * frame.backward);
-}
-
 // Of a pixel [rad].
 float pixel_spread(const DrawScene& scene, const TileView& view) {
     return static_cast<float>(2 * view.frame.tan_half_y / scene.camera.height);
@@ -73,7 +56,8 @@ float pixel_spread(const DrawScene& scene, const TileView& view) {
 void use_see(const DrawScene& scene, const GlProgram& program, const TileView& view) {
     const GlLayers& layers = scene.layers;
     const Camera& camera = scene.camera;
-    set_rays(program, view);
+    glUseProgram(program.name());
+    set_rays(view, program.name(), kTileOrigin);
     bind_environment(scene.environment, scene.rotation, program.name(), kEnvironment);
     bind_layer(scene);
     set_origin(kFieldOrigin, layers.places.field, camera.eye);
@@ -92,7 +76,8 @@ void use_see(const DrawScene& scene, const GlProgram& program, const TileView& v
 enum SmoothUniform : GLint { kSmoothSamples = 5, kTolerance, kNearSuns };
 
 void use_smooth(const DrawScene& scene, const GlProgram& program, const TileView& view) {
-    set_rays(program, view);
+    glUseProgram(program.name());
+    set_rays(view, program.name(), kTileOrigin);
     glUniform1i(kSmoothSamples, static_cast<GLint>(scene.supersampling));
     glUniform1f(kTolerance, kCornerTolerance);
     std::array<std::array<float, 4>, kMaxLayerSuns> suns{};  // a chord of 0 is never reached

@@ -171,7 +171,6 @@ formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& 
 formats::Status GlRenderer::set_layers(const LayerLight& light) {
     const CurrentContext current(state_->context);
     if (auto status = current.status(); !status) return status;
-    GlClock clock;
     Resources& resources = *state_->resources;
     GlLayers& layers = resources.layers;
     const std::string compiled_for = layers.defines;
@@ -186,7 +185,6 @@ formats::Status GlRenderer::set_layers(const LayerLight& light) {
             return made;
         }
     }
-    state_->stats.layer_seconds = clock.lap();
     return formats::ok_status();
 }
 

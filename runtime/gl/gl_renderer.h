@@ -45,7 +45,6 @@ struct GlStats {
     double upload_seconds = 0;    ///< asset and environment to buffers and textures
     double specular_seconds = 0;  ///< environment to specular light, on the CPU, and its upload
     double light_seconds = 0;     ///< light vector to its buffer
-    double layer_seconds = 0;     ///< cloud layer to textures, and its program
     double dot_seconds = 0;       ///< all dot products
     double draw_seconds = 0;      ///< view terms, geometry, layers, background and box filter
     double readback_seconds = 0;

@@ -18,6 +18,16 @@ void set_vec3(GLuint program, GLint location, formats::Vec3 v) {
     glProgramUniform3f(program, location, v.x, v.y, v.z);
 }
 
+void set_rays(const TileView& view, GLuint program, GLint first) {
+    const CameraFrame& frame = view.frame;
+    const TileGrid& grid = view.grid;
+    glProgramUniform2f(program, first, grid.first_column, grid.first_row);
+    glProgramUniform2f(program, first + 1, 2.0f / grid.columns, 2.0f / grid.rows);
+    set_vec3(program, first + 2, static_cast<float>(frame.tan_half_x) * frame.right);
+    set_vec3(program, first + 3, static_cast<float>(-frame.tan_half_y) * frame.up);
+    set_vec3(program, first + 4, -1.0f * frame.backward);
+}
+
 void set_light_from_world(const Rotation& r, GLuint program, GLint location) {
     // Rows are the light's axes, so that the product is light_from_world.
     const std::array<float, 9> rows{r.x.x, r.x.y, r.x.z, r.y.x, r.y.y, r.y.z, r.z.x, r.z.y, r.z.z};

@@ -55,6 +55,10 @@ void set_vec3(GLuint program, GLint location, formats::Vec3 v);
 void bind_environment(const GlEnvironment& environment, const Rotation& rotation, GLuint program,
                       GLint first);
 
+/// Sets what screen passes find the ray of a sample by, from location `first` on: the tile's first
+/// sample, samples to the image plane, its axes to the right and down, forward.
+void set_rays(const TileView& view, GLuint program, GLint first);
+
 /// Sets a mat3 that turns world directions into the light's frame.
 void set_light_from_world(const Rotation& rotation, GLuint program, GLint location);
 

@@ -1,6 +1,7 @@
 #include "runtime/gl/gl_surfaces.h"
 
 #include <algorithm>
+#include <bitset>
 #include <string>
 
 #include "formats/opal/ggx_albedo.h"
@@ -48,29 +49,32 @@ enum Uniform : GLint {
     kHoleClear = kTurnedSunLight + static_cast<GLint>(kMaxSuns)
 };
 
-// What a surface's program has to do.
-struct SurfaceKind {
-    bool is_textured = false, is_translucent = false;
-    bool is_mirroring = false;                        ///< translucent and glossy
-    bool is_glossy = false, has_gloss_image = false;  ///< opaque
-    bool glows = false, has_own_image = false;        ///< sends out light by itself; with an image
-    bool has_holes = false, has_hole_image = false;   ///< light passes it in places; with an image
-    bool is_clear = false;                            ///< as glass
-
-    bool has_normal_map = false, is_turned = false;  ///< by an image; and its light is
-    bool has_two_sides = false;                      ///< turned light of a thin-walled surface
-
-    bool has_image() const {
-        return is_textured || has_gloss_image || has_own_image || has_hole_image || has_normal_map;
-    }
-    std::size_t number() const {
-        return (is_textured ? 1u : 0u) + (is_translucent ? 2u : 0u) + (is_mirroring ? 4u : 0u) +
-               (is_glossy ? 8u : 0u) + (has_gloss_image ? 16u : 0u) + (has_own_image ? 32u : 0u) +
-               (glows ? 64u : 0u) + (has_holes ? 128u : 0u) + (has_hole_image ? 256u : 0u) +
-               (has_normal_map ? 512u : 0u) + (is_turned ? 1024u : 0u) +
-               (has_two_sides ? 2048u : 0u) + (is_clear ? 4096u : 0u);
-    }
+// What a surface's program has to do: each a bit of its number, and a #define of its shaders.
+enum Trait : std::size_t {
+    kTextured,
+    kTranslucent,
+    kMirroring,  // translucent and glossy
+    kGlossy,     // opaque
+    kGlossImage,
+    kOwnImage,
+    kGlows,     // sends out light by itself
+    kHasHoles,  // light passes it in places
+    kHoleImage,
+    kNormalMapped,
+    kTurned,    // and its light is
+    kTwoSided,  // turned light of a thin-walled surface
+    kClear,     // as glass
+    kTraits
 };
+constexpr std::array<const char*, kTraits> kTraitDefines{
+    "TEXTURED", "TRANSLUCENT", "MIRRORING",  "GLOSS",  "GLOSS_TEXTURED", "OWN_TEXTURED", "GLOWS",
+    "HOLES",    "HOLE_IMAGE",  "NORMAL_MAP", "TURNED", "TWO_SIDES",      "CLEAR_HOLE"};
+using SurfaceKind = std::bitset<kTraits>;
+
+bool has_image(SurfaceKind kind) {
+    return kind[kTextured] || kind[kGlossImage] || kind[kOwnImage] || kind[kHoleImage] ||
+           kind[kNormalMapped];
+}
 
 const formats::OwnLight* own_light_of(const GlAsset& asset, std::size_t primitive) {
     return asset.emitters.view().own_of(static_cast<std::uint32_t>(primitive));
@@ -86,30 +90,33 @@ const formats::NormalMapRecord* normal_map_of(const GlAsset& asset, std::size_t 
 
 SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
     const formats::PrimitiveRecord& record = asset.primitives[primitive];
+    const auto is_image = [&](std::uint32_t number) { return number < asset.images.size(); };
     SurfaceKind kind;
-    kind.is_textured = record.base_color_image < asset.images.size();
-    kind.is_translucent = record.shading == formats::Shading::translucent;
-    kind.is_mirroring = !asset.roughness.empty() && asset.roughness[primitive] >= 0;
-    kind.is_glossy = !asset.gloss.empty() && asset.gloss[primitive].is_glossy();
-    kind.has_gloss_image = kind.is_glossy && asset.gloss[primitive].image < asset.images.size();
-    const formats::OwnLight* const own = own_light_of(asset, primitive);
-    kind.glows = own != nullptr;
-    kind.has_own_image = own != nullptr && own->image < asset.images.size();
-    const formats::HoleRecord* const hole = hole_of(asset, primitive);
-    kind.has_holes = hole != nullptr;
-    kind.is_clear = hole != nullptr && hole->clear != 0;
-    kind.has_hole_image = hole != nullptr && hole->image < asset.images.size();
-    const formats::NormalMapRecord* const map = normal_map_of(asset, primitive);
-    kind.has_normal_map = map != nullptr;
-    kind.has_two_sides = map != nullptr && record.shading == formats::Shading::sheet &&
-                         formats::sheet_shares_of(*map).any();
-    kind.is_turned =
-        kind.has_two_sides || (map != nullptr && record.shading == formats::Shading::diffuse);
+    kind[kTextured] = is_image(record.base_color_image);
+    kind[kTranslucent] = record.shading == formats::Shading::translucent;
+    kind[kMirroring] = !asset.roughness.empty() && asset.roughness[primitive] >= 0;
+    kind[kGlossy] = !asset.gloss.empty() && asset.gloss[primitive].is_glossy();
+    kind[kGlossImage] = kind[kGlossy] && is_image(asset.gloss[primitive].image);
+    if (const formats::OwnLight* const own = own_light_of(asset, primitive)) {
+        kind[kGlows] = true;
+        kind[kOwnImage] = is_image(own->image);
+    }
+    if (const formats::HoleRecord* const hole = hole_of(asset, primitive)) {
+        kind[kHasHoles] = true;
+        kind[kClear] = hole->clear != 0;
+        kind[kHoleImage] = is_image(hole->image);
+    }
+    if (const formats::NormalMapRecord* const map = normal_map_of(asset, primitive)) {
+        kind[kNormalMapped] = true;
+        kind[kTwoSided] =
+            record.shading == formats::Shading::sheet && formats::sheet_shares_of(*map).any();
+        kind[kTurned] = kind[kTwoSided] || record.shading == formats::Shading::diffuse;
+    }
     return kind;
 }
 
 bool has_view(SurfaceKind kind) {
-    return kind.is_translucent || kind.is_glossy || kind.has_normal_map || kind.is_clear;
+    return kind[kTranslucent] || kind[kGlossy] || kind[kNormalMapped] || kind[kClear];
 }
 
 std::string define(const char* name, const std::string& value = {}) {
@@ -118,44 +125,34 @@ std::string define(const char* name, const std::string& value = {}) {
 
 std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
     std::string text;
-    if (kind.is_textured) text += define("TEXTURED");
-    if (kind.is_translucent) text += define("TRANSLUCENT");
-    if (kind.is_mirroring) text += define("MIRRORING");
-    if (kind.is_glossy) text += define("GLOSS");
-    if (kind.has_gloss_image) text += define("GLOSS_TEXTURED");
-    if (kind.glows) text += define("GLOWS");
-    if (kind.has_own_image) text += define("OWN_TEXTURED");
-    if (kind.has_holes) text += define("HOLES");
-    if (kind.has_hole_image) text += define("HOLE_IMAGE");
-    if (kind.is_clear) text += define("CLEAR_HOLE");
-    if (kind.has_holes && has_vertex_alpha) text += define("HOLE_VERTICES");
-    if (kind.has_image()) text += define("HAS_TEXCOORD");
-    if (kind.has_normal_map) text += define("NORMAL_MAP");
-    if (kind.is_turned) text += define("TURNED");
-    if (kind.has_two_sides) text += define("TWO_SIDES");
+    for (std::size_t i = 0; i < kTraits; ++i) {
+        if (kind[i]) text += define(kTraitDefines[i]);
+    }
+    if (kind[kHasHoles] && has_vertex_alpha) text += define("HOLE_VERTICES");
+    if (has_image(kind)) text += define("HAS_TEXCOORD");
     if (has_view(kind)) text += define("HAS_VIEW");
-    if (kind.is_mirroring || kind.is_glossy) text += define("HAS_OPENNESS");
+    if (kind[kMirroring] || kind[kGlossy]) text += define("HAS_OPENNESS");
     return text;
 }
 
 // The fragment shader with what it includes.
 std::string fragment_text(SurfaceKind kind) {
     std::string text;
-    if (kind.has_image()) {
+    if (has_image(kind)) {
         text += define("WRAP_CLAMP", std::to_string(static_cast<int>(formats::Wrap::clamp))) +
                 define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
                 define("WRAP_NEAREST", std::to_string(formats::kNearestBit)) + image_text;
     }
     text += cube_map_text;
     text += surface_text;
-    if (kind.is_glossy) {
+    if (kind[kGlossy]) {
         text += define("LOBE_TAPS", std::to_string(kLobeTaps)) +
                 define("ALBEDO_ROWS", std::to_string(formats::kAlbedoRows)) +
                 define("ALBEDO_COLUMNS", std::to_string(formats::kAlbedoColumns)) +
                 define("NARROW_ROUGHNESS", std::to_string(kNarrowRoughness)) +
                 define("WIDE_ROUGHNESS", std::to_string(kWideRoughness)) + gloss_text;
     }
-    if (kind.has_holes) text += std::string(covers_text) + holes_text;
+    if (kind[kHasHoles]) text += std::string(covers_text) + holes_text;
     return text + surface_frag_text;
 }
 
@@ -204,6 +201,14 @@ void set_mirroring(const DrawScene& scene, GLuint program, std::size_t primitive
     }
 }
 
+// Nothing where there is none of that number.
+void bind_image(const DrawScene& scene, GLuint unit, GLuint program, GLint location,
+                std::uint32_t image, formats::Wrap wrap_u, formats::Wrap wrap_v) {
+    if (image >= scene.asset.images.size()) return;
+    glBindTextureUnit(unit, scene.asset.images[image].name());
+    glProgramUniform2i(program, location, static_cast<GLint>(wrap_u), static_cast<GLint>(wrap_v));
+}
+
 void set_gloss(const DrawScene& scene, GLuint program, const formats::GlossRecord& gloss) {
     const GlSpecular& specular = scene.specular;
     set_light_from_world(scene.mirror_rotation, program, kLightFromWorld);
@@ -215,11 +220,7 @@ void set_gloss(const DrawScene& scene, GLuint program, const formats::GlossRecor
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, specular.cells.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, specular.suns.name());
     glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, specular.albedo.name());
-    if (gloss.image < scene.asset.images.size()) {
-        glBindTextureUnit(3, scene.asset.images[gloss.image].name());
-        glProgramUniform2i(program, kGlossWrap, static_cast<GLint>(gloss.wrap_u),
-                           static_cast<GLint>(gloss.wrap_v));
-    }
+    bind_image(scene, 3, program, kGlossWrap, gloss.image, gloss.wrap_u, gloss.wrap_v);
 }
 
 void set_own_light(const DrawScene& scene, GLuint program, std::size_t primitive) {
@@ -229,10 +230,7 @@ void set_own_light(const DrawScene& scene, GLuint program, std::size_t primitive
                                    scene.own[primitive].b}
                    : formats::Vec3{});
     const formats::OwnLight* const own = own_light_of(scene.asset, primitive);
-    if (own->image >= scene.asset.images.size()) return;
-    glBindTextureUnit(4, scene.asset.images[own->image].name());
-    glProgramUniform2i(program, kOwnWrap, static_cast<GLint>(own->wrap_u),
-                       static_cast<GLint>(own->wrap_v));
+    bind_image(scene, 4, program, kOwnWrap, own->image, own->wrap_u, own->wrap_v);
 }
 
 void set_hole(const DrawScene& scene, const TileGrid& grid, GLuint program,
@@ -244,16 +242,11 @@ void set_hole(const DrawScene& scene, const TileGrid& grid, GLuint program,
         const formats::ClearShare clear = formats::clear_share_of(hole);
         glProgramUniform2f(program, kHoleClear, clear.share, clear.eta);
     }
-    if (hole.image >= scene.asset.images.size()) return;
-    glBindTextureUnit(5, scene.asset.images[hole.image].name());
-    glProgramUniform2i(program, kHoleWrap, static_cast<GLint>(hole.wrap_u),
-                       static_cast<GLint>(hole.wrap_v));
+    bind_image(scene, 5, program, kHoleWrap, hole.image, hole.wrap_u, hole.wrap_v);
 }
 
 void set_normal_map(const DrawScene& scene, GLuint program, const formats::NormalMapRecord& map) {
-    glBindTextureUnit(6, scene.asset.images[map.image].name());
-    glProgramUniform2i(program, kNormalWrap, static_cast<GLint>(map.wrap_u),
-                       static_cast<GLint>(map.wrap_v));
+    bind_image(scene, 6, program, kNormalWrap, map.image, map.wrap_u, map.wrap_v);
     glProgramUniform1f(program, kNormalScale, map.scale);
 }
 
@@ -301,7 +294,7 @@ formats::Result<SurfacePrograms> make_surface_programs(const GlAsset& asset) {
     SurfacePrograms programs;
     for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
         const SurfaceKind kind = surface_kind(asset, p);
-        GlProgram& program = programs.program[kind.number()];
+        GlProgram& program = programs.program[kind.to_ulong()];
         if (program.name() != 0) continue;
         const std::string fragment = fragment_text(kind);
         const std::string vertex = std::string(openness_text) + surface_vert_text;
@@ -329,24 +322,21 @@ void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, cons
         const formats::PrimitiveRecord& primitive = asset.primitives[p];
         const SurfaceKind kind = surface_kind(asset, p);
         (primitive.shows_back() ? glDisable : glEnable)(GL_CULL_FACE);
-        const GLuint program = programs.program[kind.number()].name();
+        const GLuint program = programs.program[kind.to_ulong()].name();
         glUseProgram(program);
-        if (kind.is_textured) {
-            glUniform2i(kWrap, static_cast<GLint>(primitive.wrap_u),
-                        static_cast<GLint>(primitive.wrap_v));
-            glBindTextureUnit(0, asset.images[primitive.base_color_image].name());
-        }
-        if (kind.is_translucent) glUniform1f(kEta, primitive.eta);
+        bind_image(scene, 0, program, kWrap, primitive.base_color_image, primitive.wrap_u,
+                   primitive.wrap_v);
+        if (kind[kTranslucent]) glUniform1f(kEta, primitive.eta);
         if (has_view(kind)) {
             glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
         }
         glUniform1f(kShown, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
-        if (kind.is_mirroring) set_mirroring(scene, program, p);
-        if (kind.is_glossy) set_gloss(scene, program, asset.gloss[p]);
-        if (kind.has_holes) set_hole(scene, view.grid, program, *hole_of(asset, p));
-        if (kind.has_normal_map) set_normal_map(scene, program, *normal_map_of(asset, p));
-        if (kind.is_turned) set_turned_light(turned_light_of(scene, p), program);
-        if (kind.glows) set_own_light(scene, program, p);
+        if (kind[kMirroring]) set_mirroring(scene, program, p);
+        if (kind[kGlossy]) set_gloss(scene, program, asset.gloss[p]);
+        if (kind[kHasHoles]) set_hole(scene, view.grid, program, *hole_of(asset, p));
+        if (kind[kNormalMapped]) set_normal_map(scene, program, *normal_map_of(asset, p));
+        if (kind[kTurned]) set_turned_light(turned_light_of(scene, p), program);
+        if (kind[kGlows]) set_own_light(scene, program, p);
         draw_triangles(primitive);
     }
     glDisable(GL_CULL_FACE);

@@ -14,12 +14,8 @@ namespace {
 // Locations of volumes.frag.glsl.
 enum Uniform : GLint {
     kSupersampling,
-    kTileOrigin,
-    kToPlane,
-    kRight,
-    kDown,
-    kForward,
-    kNearPlane,
+    kTileOrigin,  // set_rays
+    kNearPlane = 6,
     kSuns,
     kEyeAboveGround = kSuns + static_cast<GLint>(kMaxSuns),  // with a layer
     kUnitsOfMetre,
@@ -64,8 +60,6 @@ formats::Result<GlProgram> make_volume_program(const GlVolumes& volumes, bool la
 }
 
 void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, const TileView& view) {
-    const CameraFrame& frame = view.frame;
-    const TileGrid& grid = view.grid;
     const GlBuffer records = upload_records(scene.volumes, scene.camera);
     const std::array<const GlBuffer*, 7> buffers{&records,
                                                  &scene.volumes.table,
@@ -80,11 +74,7 @@ void draw_volumes_filtered(const DrawScene& scene, const GlProgram& program, con
     const GLuint name = program.name();
     glUseProgram(name);
     glUniform1i(kSupersampling, static_cast<GLint>(scene.supersampling));
-    glUniform2f(kTileOrigin, grid.first_column, grid.first_row);
-    glUniform2f(kToPlane, 2.0f / grid.columns, 2.0f / grid.rows);
-    set_vec3(name, kRight, static_cast<float>(frame.tan_half_x) * frame.right);
-    set_vec3(name, kDown, static_cast<float>(-frame.tan_half_y) * frame.up);
-    set_vec3(name, kForward, -1.0f * frame.backward);
+    set_rays(view, name, kTileOrigin);
     const std::vector<formats::Vec3>& suns = scene.volumes.light.sun;
     if (!suns.empty()) glUniform3fv(kSuns, static_cast<GLsizei>(suns.size()), &suns.front().x);
     if (scene.volumes.glows) set_glow_colors(scene.volumes, scene.camera);

@@ -135,9 +135,7 @@ formats::Result<GlVolumes> upload_volumes(const VolumesView& volumes, std::size_
     gl.phase = make_buffer_of(std::span<const float>(phase), gl.resident);
     gl.resident += coefficient_bytes(volumes);
     if (const auto status = check_gl("uploading volumes"); !status) return status.error();
-    if (const auto status = update_coefficients(gl, TermSet::none); !status) {
-        return status.error();
-    }
+    if (const auto status = update_coefficients(gl, TermSet::none); !status) return status.error();
     return gl;
 }
 

@@ -109,9 +109,7 @@ void draw_pixel(const VolumePass& pass, const Band& band, std::uint32_t x, std::
         return;
     }
     const std::vector<LayerSheet> sheets = sheets_of_pixel(pass, band, x, y);
-    if (!agree(sheets, span)) {
-        return draw_samples(pass, band, x, y, color);
-    }
+    if (!agree(sheets, span)) return draw_samples(pass, band, x, y, color);
     const TwoParts seen = march_around(pass.volumes, march, mean_sheet(sheets).distance);
     for_samples(band, s, x, y, [&](std::size_t sample, std::uint32_t, std::uint32_t) {
         compose(seen, pass.sheets[sample], color[sample]);

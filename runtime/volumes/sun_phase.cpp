@@ -175,9 +175,7 @@ float raise(float share, float power) {
 }  // namespace
 
 SunPhase make_sun_phase(const formats::VolumeRecord& record, std::span<const float> phase) {
-    if (const auto forward = find_forward(record, phase)) {
-        return tabulate(*forward);
-    }
+    if (const auto forward = find_forward(record, phase)) return tabulate(*forward);
     SunPhase made;
     made.mean[0] = 1 / (4 * std::numbers::pi_v<float>);
     made.table.assign(phase.begin(), phase.end());

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <span>
 
-#include "runtime/gloss_light.h"
+#include "runtime/gloss_tables.h"
 #include "runtime/reduce_map.h"
 #include "runtime/specular.h"
 #include "runtime/web/data_script.h"
@@ -33,16 +33,6 @@ void put_discs(DataScript& script, const std::string& name,
                                      static_cast<float>(formats::disc_solid_angle(radius))});
     }
     script.put(name, std::span<const float>(values));
-}
-
-void put_cells(DataScript& script, const GlossLight::Cells& cells) {
-    std::vector<float> values;
-    values.reserve(8 * cells.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-        values.insert(values.end(), {cells.x[i], cells.y[i], cells.z[i], cells.solid_angle[i],
-                                     cells.r[i], cells.g[i], cells.b[i], cells.widening[i]});
-    }
-    script.put("cells", std::span<const float>(values));
 }
 
 void put_shining(DataScript& script, const Environment& environment, unsigned threads) {
@@ -83,7 +73,10 @@ std::string make_light_script(const std::string& owner, const PageLight& light,
         return script.text();
     }
     put_shining(script, environment, threads);
-    if (needs.gloss) put_cells(script, make_gloss_light(environment, threads).cells);
+    if (needs.gloss) {
+        const std::vector<float> cells = make_cell_table(make_gloss_light(environment, threads));
+        script.put("cells", std::span<const float>(cells));
+    }
     for (const SpecularLight::Map& map :
          prefilter_specular(environment, needs.levels, {}, threads).maps) {
         script.put_radiance("mirrored." + std::to_string(map.level), map.radiance.pixel,

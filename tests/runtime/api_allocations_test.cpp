@@ -7,7 +7,6 @@
 #include <cstdlib>
 #include <new>
 
-#include "runtime/opaline.hpp"
 #include "tests/runtime/api_test_support.h"
 #include "tests/runtime/light_test_support.h"
 
@@ -70,29 +69,25 @@ long allocations_of(const Work& work) {
 }
 
 TEST(ApiAllocations, ShadingAndTurningALightAllocateNothing) {
-    tests::FileBytes file = tests::write(tests::make_asset(16), "api-allocations");
-    const auto asset = load_asset(file.data(), file.size);
-    const auto light = create_light(asset.handle);
-    ASSERT_TRUE(asset && light);
-    opaline_light* const l = light.handle.get();
+    const tests::LoadedAsset loaded(tests::make_asset(16));
+    const opaline_asset* const asset = loaded.asset.get();
+    opaline_light* const l = loaded.light.get();
     const formats::Environment map = tests::lat_long_map(256, 128, tests::smooth_sky);
     const float up[3] = {0, 1, 0}, white[3] = {9, 9, 9}, eye[3] = {1, 2, 3};
     ASSERT_EQ(opaline_light_set_lat_long(l, &map.pixel[0].r, 256, 128), OPALINE_OK);
     ASSERT_EQ(opaline_light_add_sun(l, up, 0.01f, white), OPALINE_OK);
     ASSERT_EQ(opaline_light_add_sun(l, up, 0.4f, white), OPALINE_OK);
 
-    const std::uint32_t receivers = opaline_asset_receiver_count(asset.handle.get());
+    const std::uint32_t receivers = loaded.receivers();
     std::vector<float> out(std::size_t{3} * receivers), rgb(18 * 16 * 16);
     EXPECT_EQ(allocations_of([&] {
-                  EXPECT_EQ(opaline_shade(asset.handle.get(), l, 0, out.data(), out.size()),
-                            OPALINE_OK);
-                  EXPECT_EQ(opaline_shade_from(asset.handle.get(), l, 0, eye, 0, receivers,
-                                               out.data(), out.size()),
-                            OPALINE_OK);
+                  EXPECT_EQ(opaline_shade(asset, l, 0, out.data(), out.size()), OPALINE_OK);
+                  EXPECT_EQ(
+                      opaline_shade_from(asset, l, 0, eye, 0, receivers, out.data(), out.size()),
+                      OPALINE_OK);
               }),
               0);
-    const Rotation r = rotation_about_y(0.4f);
-    const std::array<float, 9> turn{r.x.x, r.x.y, r.x.z, r.y.x, r.y.y, r.y.z, r.z.x, r.z.y, r.z.z};
+    const auto turn = tests::matrix(rotation_about_y(0.4f));
     EXPECT_EQ(allocations_of([&] { EXPECT_EQ(opaline_light_turn(l, turn.data()), OPALINE_OK); }),
               0);
     EXPECT_EQ(allocations_of([&] {
@@ -101,8 +96,7 @@ TEST(ApiAllocations, ShadingAndTurningALightAllocateNothing) {
               0);
     // A call that fails has no memory to ask for either.
     EXPECT_EQ(allocations_of([&] {
-                  EXPECT_EQ(opaline_shade(asset.handle.get(), l, 0, out.data(), 1),
-                            OPALINE_BUFFER_TOO_SMALL);
+                  EXPECT_EQ(opaline_shade(asset, l, 0, out.data(), 1), OPALINE_BUFFER_TOO_SMALL);
               }),
               0);
     // Harmonics change every frame in some engines.

@@ -8,7 +8,6 @@
 
 #include "formats/opal/asset.h"
 #include "formats/opal/section.h"
-#include "runtime/opaline.hpp"
 #include "tests/runtime/api_test_support.h"
 
 namespace opaline::runtime {
@@ -41,11 +40,6 @@ struct HostMemory {
 
 class ApiLoad : public testing::Test {
   protected:
-    void SetUp() override {
-        file = tests::write(tests::make_asset(8),
-                            std::string("api-load-") +
-                                testing::UnitTest::GetInstance()->current_test_info()->name());
-    }
     opaline_status load(const opaline_load_options* options) {
         opaline_asset* loaded = nullptr;
         const opaline_status status =
@@ -62,13 +56,24 @@ class ApiLoad : public testing::Test {
                   OPALINE_OK);
         return out;
     }
-    tests::FileBytes file;
+    std::vector<float> shaded_by_default() {
+        EXPECT_EQ(load(nullptr), OPALINE_OK);
+        return shaded();
+    }
+    std::vector<formats::SectionEntry> sections() {
+        auto table = formats::read_section_table(
+            {reinterpret_cast<const std::byte*>(file.data()), file.size}, {});
+        EXPECT_TRUE(table);
+        return std::move(table).value();
+    }
+    tests::FileBytes file = tests::write(tests::make_asset(8));
     AssetHandle asset;
 };
+constexpr opaline_load_options kTrusted{sizeof(opaline_load_options), OPALINE_LOAD_TRUSTED, nullptr,
+                                        nullptr, nullptr};
 
 TEST_F(ApiLoad, MemoryOfTheAssetIsTheHostsAndGoesBack) {
-    ASSERT_EQ(load(nullptr), OPALINE_OK);
-    const std::vector<float> expected = shaded();
+    const std::vector<float> expected = shaded_by_default();
     HostMemory host;
     const opaline_load_options options = host.options();
     ASSERT_EQ(load(&options), OPALINE_OK) << opaline_last_error();
@@ -80,10 +85,9 @@ TEST_F(ApiLoad, MemoryOfTheAssetIsTheHostsAndGoesBack) {
 }
 
 TEST_F(ApiLoad, AFileIsReadByItsPath) {
-    ASSERT_EQ(load(nullptr), OPALINE_OK);
-    const std::vector<float> expected = shaded();
-    const std::filesystem::path path =
-        std::filesystem::path(testing::TempDir()) / "opaline-load-by-path.opal";
+    const std::vector<float> expected = shaded_by_default();
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path path = folder / "a.opal";
     std::ofstream(path, std::ios::binary)
         .write(file.data(), static_cast<std::streamsize>(file.size));
     auto made = load_asset(path.c_str());
@@ -106,15 +110,13 @@ TEST_F(ApiLoad, CompressedRowsAreTheSameAsset) {
     std::ranges::fill(repeated.transport.code8, static_cast<std::int8_t>(3));
     for (const auto compression :
          {formats::Compression::none, formats::Compression::fast, formats::Compression::best}) {
-        file = tests::write(repeated, "api-load-compressed", compression);
+        file = tests::write(repeated, compression);
         HostMemory host;
         const opaline_load_options options = host.options();
         ASSERT_EQ(load(&options), OPALINE_OK) << opaline_last_error();
-        const auto table = formats::read_section_table(
-            {reinterpret_cast<const std::byte*>(file.data()), file.size}, {});
-        ASSERT_TRUE(table);
+        const auto table = sections();
         const auto rows =
-            std::ranges::find(*table, formats::kTranSection, &formats::SectionEntry::id);
+            std::ranges::find(table, formats::kTranSection, &formats::SectionEntry::id);
         EXPECT_EQ(rows->stored_size < rows->size, compression != formats::Compression::none);
         if (expected.empty()) expected = shaded();
         EXPECT_EQ(shaded(), expected);
@@ -141,25 +143,19 @@ TEST_F(ApiLoad, AHostWithoutMemoryIsToldSoAndKeepsNothing) {
 }
 
 TEST_F(ApiLoad, TrustedFilesAreTheSameAssetWithoutChecksOfContent) {
-    ASSERT_EQ(load(nullptr), OPALINE_OK);
-    const std::vector<float> expected = shaded();
-    const opaline_load_options trusted{sizeof(opaline_load_options), OPALINE_LOAD_TRUSTED, nullptr,
-                                       nullptr, nullptr};
-    ASSERT_EQ(load(&trusted), OPALINE_OK);
+    const std::vector<float> expected = shaded_by_default();
+    ASSERT_EQ(load(&kTrusted), OPALINE_OK);
     EXPECT_EQ(shaded(), expected);
     // Another byte of provenance, which no function reads.
-    const auto table = formats::read_section_table(
-        {reinterpret_cast<const std::byte*>(file.data()), file.size}, {});
-    ASSERT_TRUE(table);
-    for (const formats::SectionEntry& entry : *table) {
+    for (const formats::SectionEntry& entry : sections()) {
         if (entry.id == formats::kProvSection) file.data()[entry.offset] = '[';
     }
     EXPECT_EQ(load(nullptr), OPALINE_BAD_FILE);
-    EXPECT_EQ(load(&trusted), OPALINE_OK);
+    EXPECT_EQ(load(&kTrusted), OPALINE_OK);
     EXPECT_EQ(shaded(), expected);
     // What is outside of the file is refused all the same.
     file.size /= 2;
-    EXPECT_EQ(load(&trusted), OPALINE_BAD_FILE);
+    EXPECT_EQ(load(&kTrusted), OPALINE_BAD_FILE);
 }
 
 TEST_F(ApiLoad, WrongUseIsRefused) {
@@ -182,9 +178,7 @@ TEST_F(ApiLoad, WrongUseIsRefused) {
     ++header.version;
     std::memcpy(file.data(), &header, sizeof header);
     EXPECT_EQ(load(nullptr), OPALINE_NEWER_FILE);
-    const opaline_load_options trusted{sizeof(opaline_load_options), OPALINE_LOAD_TRUSTED, nullptr,
-                                       nullptr, nullptr};
-    EXPECT_EQ(load(&trusted), OPALINE_NEWER_FILE);
+    EXPECT_EQ(load(&kTrusted), OPALINE_NEWER_FILE);
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 #include <cstring>
 #include <thread>
 
-#include "runtime/opaline.hpp"
-#include "runtime/shade.h"
 #include "tests/runtime/api_test_support.h"
 #include "tests/runtime/light_test_support.h"
 
@@ -15,39 +13,30 @@ namespace {
 using formats::Rgb;
 using formats::TermSet;
 using testing::HasSubstr;
-using tests::FileBytes;
+using tests::LoadedAsset;
 using tests::make_asset;
-using tests::write;
 
-class Api : public testing::Test {
+class Api : public testing::Test, protected LoadedAsset {
   protected:
-    void SetUp() override {
-        file =
-            write(make_asset(8), std::string("api-") +
-                                     testing::UnitTest::GetInstance()->current_test_info()->name());
-        auto loaded = load_asset(file.data(), file.size);
-        ASSERT_TRUE(loaded) << opaline_last_error();
-        asset = std::move(loaded.handle);
-        auto created = create_light(asset);
-        ASSERT_TRUE(created) << opaline_last_error();
-        light = std::move(created.handle);
-        receivers = opaline_asset_receiver_count(asset.get());
-    }
-    std::vector<float> shaded(std::uint32_t flags = 0) {
-        std::vector<float> out(3 * receivers, -1.0f);
-        EXPECT_EQ(opaline_shade(asset.get(), light.get(), flags, out.data(), out.size()),
-                  OPALINE_OK)
-            << opaline_last_error();
-        return out;
-    }
-    FileBytes file;
-    AssetHandle asset;
-    LightHandle light;
-    std::size_t receivers = 0;
+    Api() : LoadedAsset(make_asset(8)) {}
 };
 
+// With so many rows a vertex.
+formats::Asset make_translucent(std::uint32_t terms) {
+    formats::Asset source = make_asset(8);
+    formats::PrimitiveRecord& p = source.primitives[0];
+    p.shading = formats::Shading::translucent;
+    p.eta = 1.4f;
+    p.terms = terms;
+    p.vertex_count /= terms;
+    source.position.resize(p.vertex_count);
+    source.normal.resize(p.vertex_count);
+    source.base_color.resize(p.vertex_count);
+    return source;
+}
+
 TEST_F(Api, DescribesTheAsset) {
-    EXPECT_EQ(receivers, 41u);
+    EXPECT_EQ(receivers(), 41u);
     EXPECT_EQ(opaline_asset_cubemap_size(asset.get()), 8u);
     ASSERT_EQ(opaline_asset_primitive_count(asset.get()), 1u);
     opaline_primitive_info info{};
@@ -67,7 +56,7 @@ TEST_F(Api, ShadesAsTheLibraryDoes) {
     const formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
     ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
     const formats::Asset same = make_asset(8);
-    std::vector<Rgb> expected(receivers);
+    std::vector<Rgb> expected(receivers());
     shade(same.view(), project_environment(map, 8), expected);
     const std::vector<float> out = shaded();
     EXPECT_EQ(std::memcmp(out.data(), expected.data(), out.size() * sizeof(float)), 0);
@@ -79,23 +68,21 @@ TEST_F(Api, ShadesAsTheLibraryDoes) {
 
 TEST_F(Api, OrderOfRotationMapAndSunDoesNotMatter) {
     const formats::Environment map = tests::cube_map(8, tests::smooth_sky);
-    const Rotation r = rotation_about_y(0.8f);
-    const float turn[9] = {r.x.x, r.x.y, r.x.z, r.y.x, r.y.y, r.y.z, r.z.x, r.z.y, r.z.z};
+    const auto turn = tests::matrix(rotation_about_y(0.8f)), identity = tests::matrix({});
     const float direction[3] = {0, 3, 4}, radiance[3] = {1e4f, 1e4f, 9e3f};
-    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn.data()), OPALINE_OK);
     ASSERT_EQ(opaline_light_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
     ASSERT_EQ(opaline_light_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
     const std::vector<float> first = shaded();
 
     ASSERT_EQ(opaline_light_clear(light.get()), OPALINE_OK);
     EXPECT_THAT(shaded(), testing::Each(0.0f));
-    const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    ASSERT_EQ(opaline_light_set_rotation(light.get(), identity), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), identity.data()), OPALINE_OK);
     ASSERT_EQ(opaline_light_set_threads(light.get(), 2), OPALINE_OK);
     ASSERT_EQ(opaline_light_add_sun(light.get(), direction, 0.005f, radiance), OPALINE_OK);
     ASSERT_EQ(opaline_light_set_cubemap(light.get(), &map.pixel[0].r, 8), OPALINE_OK);
     EXPECT_NE(shaded(), first);
-    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn), OPALINE_OK);
+    ASSERT_EQ(opaline_light_set_rotation(light.get(), turn.data()), OPALINE_OK);
     EXPECT_EQ(shaded(), first);
 }
 
@@ -105,10 +92,9 @@ TEST_F(Api, RangesOnSeveralThreadsMakeTheWhole) {
     const std::vector<float> whole = shaded();
     std::vector<float> parts(whole.size());
     std::vector<std::thread> threads;
-    for (std::uint32_t first = 0; first < receivers; first += 10) {
+    for (std::uint32_t first = 0; first < receivers(); first += 10) {
         threads.emplace_back([&, first] {
-            const auto count =
-                std::min<std::uint32_t>(10, static_cast<std::uint32_t>(receivers) - first);
+            const std::uint32_t count = std::min(10u, receivers() - first);
             opaline_shade_range(asset.get(), light.get(), 0, first, count, &parts[3 * first],
                                 std::size_t{3} * count);
         });
@@ -125,30 +111,25 @@ TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
     opaline_light* const l = light.get();
     ASSERT_EQ(opaline_light_add_sun(l, up, 0.1f, white), OPALINE_OK);
     const std::vector<float> before = shaded();
-    EXPECT_EQ(opaline_light_add_sun(l, none, 0.1f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_add_sun(l, bad, 0.1f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_add_sun(l, up, 0.1f, bad), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_add_sun(l, up, 0.0f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_add_sun(l, up, NAN, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_add_sun(l, up, 1.6f, white), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_add_sun(nullptr, up, 0.1f, white), OPALINE_INVALID_ARGUMENT);
     const float shear[9] = {1, 0, 0, 0.1f, 1, 0, 0, 0, 1};
     EXPECT_EQ(opaline_light_set_rotation(l, shear), OPALINE_INVALID_ARGUMENT);
     EXPECT_THAT(opaline_last_error(), HasSubstr("rotation"));
-    EXPECT_EQ(opaline_light_set_lat_long(l, bad, 1, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_set_lat_long(l, white, 0, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_set_lat_long(l, white, 40000, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_set_cubemap(l, white, 0), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_set_threads(l, 257), OPALINE_INVALID_ARGUMENT);
-    std::vector<float> out(3 * receivers);
-    EXPECT_EQ(opaline_shade(asset.get(), l, 128, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_shade(asset.get(), l, 0, out.data(), out.size() - 1),
-              OPALINE_BUFFER_TOO_SMALL);
-    EXPECT_EQ(opaline_shade(asset.get(), l, 0, nullptr, out.size()), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_shade_range(asset.get(), l, 0, 41, 1, out.data(), 3),
-              OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_shade_range(asset.get(), l, 0, 40, 0xffffffffu, out.data(), 3),
-              OPALINE_INVALID_ARGUMENT);
+    std::vector<float> out(std::size_t{3} * receivers());
+    const opaline_asset* const a = asset.get();
+    EXPECT_THAT(
+        (tests::Statuses{
+            opaline_light_add_sun(l, none, 0.1f, white), opaline_light_add_sun(l, bad, 0.1f, white),
+            opaline_light_add_sun(l, up, 0.1f, bad), opaline_light_add_sun(l, up, 0.0f, white),
+            opaline_light_add_sun(l, up, NAN, white), opaline_light_add_sun(l, up, 1.6f, white),
+            opaline_light_add_sun(nullptr, up, 0.1f, white),
+            opaline_light_set_lat_long(l, bad, 1, 1), opaline_light_set_lat_long(l, white, 0, 1),
+            opaline_light_set_lat_long(l, white, 40000, 1), opaline_light_set_cubemap(l, white, 0),
+            opaline_light_set_threads(l, 257), opaline_shade(a, l, 128, out.data(), out.size()),
+            opaline_shade(a, l, 0, nullptr, out.size()),
+            opaline_shade_range(a, l, 0, 41, 1, out.data(), 3),
+            opaline_shade_range(a, l, 0, 40, 0xffffffffu, out.data(), 3)}),
+        testing::Each(OPALINE_INVALID_ARGUMENT));
+    EXPECT_EQ(opaline_shade(a, l, 0, out.data(), out.size() - 1), OPALINE_BUFFER_TOO_SMALL);
     EXPECT_EQ(opaline_shade_range(asset.get(), l, 0, 41, 0, out.data(), 0), OPALINE_OK);
     EXPECT_EQ(shaded(), before);
     opaline_asset_release(nullptr);
@@ -157,13 +138,9 @@ TEST_F(Api, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
 }
 
 TEST_F(Api, LightOfAnotherBasisIsRefused) {
-    FileBytes other_file = write(make_asset(16), "api-other");
-    auto other = load_asset(other_file.data(), other_file.size);
-    ASSERT_TRUE(other);
-    auto other_light = create_light(other.handle);
-    ASSERT_TRUE(other_light);
-    std::vector<float> out(3 * receivers);
-    EXPECT_EQ(opaline_shade(asset.get(), other_light.handle.get(), 0, out.data(), out.size()),
+    const LoadedAsset other(make_asset(16));
+    std::vector<float> out(std::size_t{3} * receivers());
+    EXPECT_EQ(opaline_shade(asset.get(), other.light.get(), 0, out.data(), out.size()),
               OPALINE_INVALID_ARGUMENT);
 }
 
@@ -179,7 +156,7 @@ TEST_F(Api, DamagedFilesAreRefusedWhereverTheDamageIs) {
     for (std::size_t at = 0; at < file.size; at += 7) {
         file.data()[at] = static_cast<char>(file.data()[at] ^ 0x10);
         if (const auto loaded = load_asset(file.data(), file.size)) {
-            std::vector<float> out(3 * receivers);
+            std::vector<float> out(std::size_t{3} * receivers());
             const auto l = create_light(loaded.handle);
             opaline_shade(loaded.handle.get(), l.handle.get(), 0, out.data(), out.size());
         }
@@ -188,19 +165,9 @@ TEST_F(Api, DamagedFilesAreRefusedWhereverTheDamageIs) {
 }
 
 TEST_F(Api, TranslucentPrimitivesAreShadedFromTheEyeThatIsGiven) {
-    formats::Asset source = make_asset(8);
-    formats::PrimitiveRecord& p = source.primitives[0];
-    p.shading = formats::Shading::translucent;
-    p.eta = 1.4f;
-    p.terms = 4;
-    p.vertex_count /= 4;
-    source.position.resize(p.vertex_count);
-    source.normal.resize(p.vertex_count);
-    source.base_color.resize(p.vertex_count);
-    FileBytes bytes = write(source, "api-translucent");
-    auto translucent = load_asset(bytes.data(), bytes.size);
-    ASSERT_TRUE(translucent) << opaline_last_error();
-    const opaline_asset* const a = translucent.handle.get();
+    const formats::Asset source = make_translucent(4);
+    const LoadedAsset translucent(source);
+    const opaline_asset* const a = translucent.asset.get();
     opaline_primitive_shading shading{};
     EXPECT_EQ(opaline_asset_primitive_shading(a, 0, &shading), OPALINE_INVALID_ARGUMENT);
     shading.struct_size = sizeof shading;
@@ -216,7 +183,7 @@ TEST_F(Api, TranslucentPrimitivesAreShadedFromTheEyeThatIsGiven) {
     const formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
     ASSERT_EQ(opaline_light_set_lat_long(light.get(), &map.pixel[0].r, 64, 32), OPALINE_OK);
     const LightVector vector = project_environment(map, 8);
-    const auto count = p.vertex_count;
+    const std::uint32_t count = translucent.receivers();
     const float eye[3] = {1, 2, -1};
     const auto expect = [&](std::uint32_t flags, const float* from, const ShadeOptions& options) {
         std::vector<Rgb> expected(count);
@@ -241,25 +208,14 @@ TEST_F(Api, TranslucentPrimitivesAreShadedFromTheEyeThatIsGiven) {
 }
 
 TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
-    formats::Asset source = make_asset(8);
-    formats::PrimitiveRecord& p = source.primitives[0];
-    p.shading = formats::Shading::translucent;
-    p.eta = 1.4f;
-    p.terms = 5;
-    p.flags = formats::PrimitiveRecord::kSeparate;
-    p.vertex_count /= 5;
-    source.position.resize(p.vertex_count);
-    source.normal.resize(p.vertex_count);
-    source.base_color.resize(p.vertex_count);
+    formats::Asset source = make_translucent(5);
+    const std::size_t vertices = source.position.size();
+    source.primitives[0].flags = formats::PrimitiveRecord::kSeparate;
     source.roughness = {0.5f};
-    source.openness.resize(p.vertex_count, formats::encode_openness({0, 1, 0}, 0.9f));
-    FileBytes bytes = write(source, "api-glossy");
-    auto glossy = load_asset(bytes.data(), bytes.size);
-    ASSERT_TRUE(glossy) << opaline_last_error();
-    auto created = create_light(glossy.handle);
-    ASSERT_TRUE(created);
-    const opaline_asset* const a = glossy.handle.get();
-    opaline_light* const l = created.handle.get();
+    source.openness.resize(vertices, formats::encode_openness({0, 1, 0}, 0.9f));
+    const LoadedAsset glossy(source);
+    const opaline_asset* const a = glossy.asset.get();
+    opaline_light* const l = glossy.light.get();
     // Map, sun, rotation: all three reach the mirrored light.
     formats::Environment map = tests::lat_long_map(64, 32, tests::smooth_sky);
     map.discs = {{{0, 0.6f, 0.8f}, 0.01f, {900, 800, 700}}};
@@ -273,9 +229,9 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
     const std::uint32_t level = roughness_level(0.5f);
     const SpecularLight specular = prefilter_specular(map, {&level, 1}, rotation, 1);
     const auto expect = [&](std::uint32_t flags, TermSet terms) {
-        std::vector<Rgb> expected(p.vertex_count);
+        std::vector<Rgb> expected(vertices);
         shade(source.view(), vector, expected, {.terms = terms, .specular = &specular});
-        std::vector<float> out(3 * std::size_t{p.vertex_count});
+        std::vector<float> out(3 * vertices);
         ASSERT_EQ(opaline_shade(a, l, flags, out.data(), out.size()), OPALINE_OK)
             << opaline_last_error();
         for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -288,7 +244,7 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
     expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SPECULAR, TermSet::single);
     expect(OPALINE_SHADE_WITHOUT_MULTIPLE | OPALINE_SHADE_WITHOUT_SINGLE, TermSet::specular);
     // A light of an asset without gloss has nothing to mirror.
-    std::vector<float> out(3 * std::size_t{p.vertex_count});
+    std::vector<float> out(3 * vertices);
     EXPECT_EQ(opaline_shade(a, light.get(), 0, out.data(), out.size()), OPALINE_INVALID_ARGUMENT);
     EXPECT_THAT(opaline_last_error(), HasSubstr("roughness"));
     EXPECT_EQ(opaline_shade(a, light.get(), OPALINE_SHADE_WITHOUT_SPECULAR, out.data(), out.size()),
@@ -296,11 +252,9 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
     // Merged rows cannot be taken apart.
     source.primitives[0].flags = 0;
     source.primitives[0].terms = 4;
-    FileBytes merged_bytes = write(source, "api-merged");
-    auto merged = load_asset(merged_bytes.data(), merged_bytes.size);
-    ASSERT_TRUE(merged) << opaline_last_error();
+    const LoadedAsset merged(source);
     EXPECT_EQ(
-        opaline_shade(merged.handle.get(), l, OPALINE_SHADE_WITHOUT_SINGLE, out.data(), out.size()),
+        opaline_shade(merged.asset.get(), l, OPALINE_SHADE_WITHOUT_SINGLE, out.data(), out.size()),
         OPALINE_INVALID_ARGUMENT);
     EXPECT_THAT(opaline_last_error(), HasSubstr("--separate-terms"));
 }

@@ -1,16 +1,18 @@
 #pragma once
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <array>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "formats/opal/write_opal.h"
-#include "tests/runtime/row_test_support.h"
+#include "runtime/opaline.hpp"
+#include "tests/runtime/shade_test_support.h"
+#include "tests/support/temporary_folder.h"
 
 namespace opaline::tests {
 
@@ -29,31 +31,58 @@ struct FileBytes {
 inline formats::Asset make_asset(std::uint32_t n) {
     formats::Asset asset;
     asset.provenance = "{}";
-    asset.transport = tests::random_rows(n, 8, 3, 21);
     formats::PrimitiveRecord p;
     p.node = 4;
-    p.vertex_count = asset.transport.view().rows();
     p.bands = 3;
     p.flags = formats::PrimitiveRecord::kDoubleSided;
-    asset.primitives = {p};
-    asset.position.resize(p.vertex_count);
-    asset.normal.resize(p.vertex_count, {0, 1, 0});
-    asset.base_color.resize(p.vertex_count, {0.5f, 0.5f, 0.5f});
+    add_random_primitive(asset, n, p, 21);
     return asset;
 }
 
-inline FileBytes write(const formats::Asset& asset, const std::string& name,
+inline FileBytes write(const formats::Asset& asset,
                        formats::Compression compression = formats::Compression::none) {
-    const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
-    auto file = formats::AtomicFile::create(path);
+    const TemporaryFolder folder;
+    auto file = formats::AtomicFile::create(folder / "a.opal");
     EXPECT_TRUE(file && formats::write_opal_bytes(asset.view(), *file, {}, compression) &&
                 file->commit());
-    std::ifstream in(path, std::ios::binary);
+    std::ifstream in(folder / "a.opal", std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(in), {}};
-    std::filesystem::remove(path);
     FileBytes bytes{std::vector<char>(content.size() + 64), content.size()};
     std::memcpy(bytes.data(), content.data(), content.size());
     return bytes;
 }
+
+/// An asset that the library has loaded from memory, and a light of it.
+struct LoadedAsset {
+    explicit LoadedAsset(const formats::Asset& source) : file(write(source)) {
+        auto loaded = load_asset(file.data(), file.size);
+        EXPECT_TRUE(loaded) << opaline_last_error();
+        asset = std::move(loaded.handle);
+        light = new_light();
+    }
+    LightHandle new_light() const {
+        auto created = create_light(asset);
+        EXPECT_TRUE(created) << opaline_last_error();
+        return std::move(created.handle);
+    }
+    std::uint32_t receivers() const { return opaline_asset_receiver_count(asset.get()); }
+    std::vector<float> shaded(std::uint32_t flags = 0) const {
+        std::vector<float> out(std::size_t{3} * receivers(), -1.0f);
+        EXPECT_EQ(opaline_shade(asset.get(), light.get(), flags, out.data(), out.size()),
+                  OPALINE_OK)
+            << opaline_last_error();
+        return out;
+    }
+    FileBytes file;
+    AssetHandle asset;
+    LightHandle light;
+};
+
+/// A rotation as the interface takes it, column by column.
+inline std::array<float, 9> matrix(const runtime::Rotation& r) {
+    return {r.x.x, r.x.y, r.x.z, r.y.x, r.y.y, r.y.z, r.z.x, r.z.y, r.z.z};
+}
+
+using Statuses = std::vector<opaline_status>;
 
 }  // namespace opaline::tests

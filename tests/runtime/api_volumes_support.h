@@ -6,8 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/opaline.hpp"
-#include "tests/formats/opal/opal_bytes.h"
+#include "tests/runtime/api_test_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
 // Volumes behind the C interface.
@@ -52,17 +51,11 @@ inline formats::Asset make_smoky_asset(std::uint32_t n) {
 }
 
 // An asset that the library has loaded, a light and the volumes in it.
-struct VolumeHandles {
-    explicit VolumeHandles(const formats::Asset& source) : file(tests::encode(source)) {
-        asset = load_asset(file.bytes().data(), file.bytes().size()).handle;
-        EXPECT_NE(asset, nullptr) << opaline_last_error();
-        light = create_light(asset).handle;
-        volume_light = create_volume_light(asset).handle;
-        EXPECT_TRUE(light && volume_light) << opaline_last_error();
+struct VolumeHandles : tests::LoadedAsset {
+    explicit VolumeHandles(const formats::Asset& source)
+        : LoadedAsset(source), volume_light(create_volume_light(asset).handle) {
+        EXPECT_TRUE(volume_light) << opaline_last_error();
     }
-    tests::AlignedBytes file;
-    AssetHandle asset;
-    LightHandle light;
     VolumeLightHandle volume_light;
 };
 

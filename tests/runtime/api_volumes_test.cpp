@@ -238,20 +238,17 @@ TEST_F(ApiVolumes, BadArgumentsAreRefusedWithAReasonAndChangeNothing) {
     update();
     const auto before = march();
     opaline_volume_light* out = nullptr;
-    EXPECT_EQ(opaline_volume_light_create(nullptr, &out), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_volume_light_create(asset, nullptr), OPALINE_INVALID_ARGUMENT);
-    opaline_volume_light_release(nullptr);
-    const auto update_status = [&](opaline_volume_light* v, const opaline_asset* a,
-                                   const opaline_light* l, std::uint32_t flags,
-                                   std::uint32_t threads) {
-        return opaline_volume_light_update(v, a, l, flags, threads);
-    };
-    EXPECT_EQ(update_status(nullptr, asset, light, 0, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(update_status(volume_light, nullptr, light, 0, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(update_status(volume_light, asset, nullptr, 0, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(update_status(volume_light, asset, light, 0, 257), OPALINE_INVALID_ARGUMENT);
+    const auto update_with = opaline_volume_light_update;
+    EXPECT_THAT((tests::Statuses{opaline_volume_light_create(nullptr, &out),
+                                 opaline_volume_light_create(asset, nullptr),
+                                 update_with(nullptr, asset, light, 0, 1),
+                                 update_with(volume_light, nullptr, light, 0, 1),
+                                 update_with(volume_light, asset, nullptr, 0, 1),
+                                 update_with(volume_light, asset, light, 0, 257)}),
+                testing::Each(OPALINE_INVALID_ARGUMENT));
     EXPECT_THAT(opaline_last_error(), HasSubstr("256 threads"));
-    EXPECT_EQ(update_status(volume_light, asset, light, OPALINE_SHADE_WITHOUT_SPECULAR, 1),
+    opaline_volume_light_release(nullptr);
+    EXPECT_EQ(update_with(volume_light, asset, light, OPALINE_SHADE_WITHOUT_SPECULAR, 1),
               OPALINE_INVALID_ARGUMENT);
     EXPECT_THAT(opaline_last_error(), HasSubstr("flags"));
     opaline_march_result result{};
@@ -300,7 +297,7 @@ TEST_F(ApiVolumes, OtherAssetsAndLightsOfAnotherBasisAreRefused) {
 
 TEST_F(ApiVolumes, AnAssetReleasedAndLoadedAgainIsAnother) {
     handles.asset.reset();
-    auto loaded = load_asset(handles.file.bytes().data(), handles.file.bytes().size());
+    auto loaded = load_asset(handles.file.data(), handles.file.size);
     ASSERT_TRUE(loaded);
     opaline_march_result result{};
     EXPECT_EQ(

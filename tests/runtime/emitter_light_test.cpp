@@ -1,13 +1,11 @@
 // Light of emitters: rows beside those of the environment.
 #include "runtime/emitter_light.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
-#include "runtime/shade.h"
 #include "runtime/texture.h"
 #include "tests/formats/opal/emitter_fixture.h"
-#include "tests/runtime/light_test_support.h"
-#include "tests/runtime/row_test_support.h"
+#include "tests/runtime/shade_test_support.h"
 
 namespace opaline::runtime {
 namespace {
@@ -30,22 +28,17 @@ LightVector black_light() {
 
 std::vector<Rgb> shaded(const Asset& asset, const LightVector& light, const EmitterLight& emitters,
                         std::optional<formats::Vec3> eye = std::nullopt) {
-    std::vector<Rgb> out(asset.position.size());
     ShadeOptions options;
     options.emitters = emitters;
     options.eye = eye;
-    shade(asset.view(), light, out, options);
-    return out;
+    return tests::shaded(asset, light, options);
 }
 
 TEST(EmitterLight, AllOffInBlackLightIsBlack) {
     const Asset asset = emitting_asset();
-    for (const Rgb& value : shaded(asset, black_light(), dark_emitters())) {
-        EXPECT_EQ(value, Rgb{});
-    }
     const std::vector<Rgb> off(2);
-    for (const Rgb& value : shaded(asset, black_light(), {off})) {
-        EXPECT_EQ(value, Rgb{});
+    for (const EmitterLight& emitters : {dark_emitters(), EmitterLight{off}}) {
+        EXPECT_THAT(shaded(asset, black_light(), emitters), testing::Each(Rgb{}));
     }
 }
 
@@ -94,14 +87,7 @@ TEST(EmitterLight, ThinWallsShowTheSideThatIsSeen) {
 }
 
 TEST(EmitterLight, RangesAndThreadsDoNotMatter) {
-    const Asset asset = emitting_asset();
-    const LightVector light = tests::random_light(8, 5);
-    const std::vector<Rgb> all = shaded(asset, light, {});
-    std::vector<Rgb> part(3);
-    for (std::uint32_t first = 0; first + 3 <= all.size(); ++first) {
-        shade_range(asset.view(), light, first, part);
-        EXPECT_TRUE(std::equal(part.begin(), part.end(), all.begin() + first)) << first;
-    }
+    tests::expect_same_in_threads_and_ranges(emitting_asset(), tests::random_light(8, 5));
 }
 
 // What a renderer interpolates has no light of the surface itself.

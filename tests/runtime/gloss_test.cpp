@@ -5,10 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/shade.h"
 #include "runtime/surface.h"
 #include "tests/runtime/light_test_support.h"
-#include "tests/runtime/row_test_support.h"
+#include "tests/runtime/shade_test_support.h"
 
 namespace opaline::runtime {
 namespace {
@@ -19,14 +18,6 @@ using formats::GlossRecord;
 using formats::Rgb;
 using formats::TermSet;
 using formats::Vec3;
-
-Environment constant(Rgb radiance) {
-    return tests::lat_long_map(64, 32, [radiance](Vec3) { return radiance; });
-}
-
-ViewOfReceiver seen_at(float cosine) {
-    return {{0, 1, 0}, {std::sqrt(1 - cosine * cosine), cosine, 0}, cosine, false};
-}
 
 formats::GlossSurface metal(Rgb color, float roughness) {
     return formats::make_gloss_surface({}, color, 1, roughness);
@@ -54,14 +45,20 @@ TEST(GlossLight, CellsCoverTheSphereOnceWithAllTheLight) {
     EXPECT_EQ(light.map.back().width, 1u);
 }
 
-TEST(GlossLight, HasTheSameBitsForAnyNumberOfThreads) {
+// Of both kinds of glossy surfaces.
+TEST(SpecularLight, HasTheSameBitsForAnyNumberOfThreads) {
     const Environment sky = tests::lat_long_map(64, 32, tests::smooth_sky);
-    const GlossLight one = make_gloss_light(sky, 1), three = make_gloss_light(sky, 3);
-    for (std::size_t i = 0; i < one.map.size(); ++i) {
-        EXPECT_EQ(one.map[i].pixel, three.map[i].pixel);
+    const SpecularLight one = make_specular_light(sky, {{8, 40}, true}, {}, 1),
+                        three = make_specular_light(sky, {{8, 40}, true}, {}, 3);
+    ASSERT_EQ(one.maps.size(), 2u);
+    for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(one.maps[i].radiance.pixel, three.maps[i].radiance.pixel);
     }
-    EXPECT_EQ(one.cells.x, three.cells.x);
-    EXPECT_EQ(one.cells.r, three.cells.r);
+    for (std::size_t i = 0; i < one.gloss.map.size(); ++i) {
+        EXPECT_EQ(one.gloss.map[i].pixel, three.gloss.map[i].pixel);
+    }
+    EXPECT_EQ(one.gloss.cells.x, three.gloss.cells.x);
+    EXPECT_EQ(one.gloss.cells.r, three.gloss.cells.r);
 }
 
 TEST(GlossLight, SmallDiscsAreSunsAndLargeOnesLight) {
@@ -78,11 +75,11 @@ TEST(GlossLight, SmallDiscsAreSunsAndLargeOnesLight) {
 }
 
 TEST(Gloss, WhiteLightComesOutAsTheAlbedoAtEveryRoughness) {
-    const GlossLight light = make_gloss_light(constant({1, 1, 1}), 1);
+    const GlossLight light = make_gloss_light(tests::even_sky({1, 1, 1}), 1);
     for (const float roughness : {0.0f, 0.1f, 0.3f, 0.45f, 0.7f, 1.0f}) {
         for (const float c : {0.01f, 0.1f, 0.5f, 1.0f}) {
             const formats::GlossSurface surface = metal({1, 0.5f, 0.1f}, roughness);
-            const Rgb found = eval_gloss(light, {}, surface, seen_at(c));
+            const Rgb found = eval_gloss(light, {}, surface, tests::seen_at(c));
             const Rgb expected = formats::eval_gloss_albedo(surface, c).specular;
             EXPECT_NEAR(found.r, expected.r, 1e-5f) << roughness << ' ' << c;
             EXPECT_NEAR(found.r, 1, 1e-5f);
@@ -112,7 +109,7 @@ TEST(Gloss, AMirrorShowsTheSunsOwnRadiance) {
     Environment environment;
     environment.discs = {{{0, 1, 0}, 0.005f, {300, 200, 100}}};
     const GlossLight light = make_gloss_light(environment, 1);
-    const Rgb found = eval_gloss(light, {}, metal({1, 1, 1}, 0), seen_at(1));
+    const Rgb found = eval_gloss(light, {}, metal({1, 1, 1}, 0), tests::seen_at(1));
     // Widened, with the mirror's own width on top.
     const float expected = 300 * 0.0025f * 0.0025f / (0.0025f * 0.0025f + 1e-6f);
     EXPECT_NEAR(found.r, expected, 0.02f * expected);
@@ -120,25 +117,25 @@ TEST(Gloss, AMirrorShowsTheSunsOwnRadiance) {
 }
 
 TEST(Gloss, FadesBehindTheSilhouetteAndIsBlackWithoutANormalOrLight) {
-    const GlossLight light = make_gloss_light(constant({1, 1, 1}), 1);
+    const GlossLight light = make_gloss_light(tests::even_sky({1, 1, 1}), 1);
     const formats::GlossSurface surface = metal({1, 1, 1}, 0.5f);
-    const auto at = [&](float c) { return eval_gloss(light, {}, surface, seen_at(c)).r; };
+    const auto at = [&](float c) { return eval_gloss(light, {}, surface, tests::seen_at(c)).r; };
     EXPECT_NEAR(at(0), 1, 1e-4f);
     EXPECT_NEAR(at(-0.1f), 0.5f, 1e-4f);
     EXPECT_EQ(at(-0.2f), 0);
     EXPECT_EQ(eval_gloss(light, {}, surface, {{0, 0, 0}, {0, 1, 0}, 0, false}), Rgb{});
-    EXPECT_EQ(eval_gloss({}, {}, surface, seen_at(0.5f)), Rgb{});
+    EXPECT_EQ(eval_gloss({}, {}, surface, tests::seen_at(0.5f)), Rgb{});
 }
 
 TEST(Gloss, StaysFiniteUnderAbsurdLight) {
     const float largest = std::numeric_limits<float>::max();
-    Environment environment = constant({largest, 0, 1e-38f});
+    Environment environment = tests::even_sky({largest, 0, 1e-38f});
     environment.discs = {{{0, 1, 0}, 0.1f, {largest, largest, 0}},
                          {{0, 1, 0}, 0.001f, {largest, largest, 0}}};
     const GlossLight light = make_gloss_light(environment, 1);
     for (const float roughness : {0.0f, 0.45f, 1.0f}) {
         for (const float c : {0.001f, 0.5f, 1.0f}) {
-            const Rgb found = eval_gloss(light, {}, metal({1, 1, 1}, roughness), seen_at(c));
+            const Rgb found = eval_gloss(light, {}, metal({1, 1, 1}, roughness), tests::seen_at(c));
             EXPECT_TRUE(std::isfinite(found.r) && std::isfinite(found.g) && std::isfinite(found.b));
             EXPECT_GE(found.b, 0);
         }
@@ -152,16 +149,7 @@ Asset make_glossy_asset(float open = 1) {
     for (std::uint32_t p = 0; p < 3; ++p) {
         formats::PrimitiveRecord record;
         record.bands = 3;
-        record.first_vertex = record.first_row = asset.transport.view().rows();
-        record.first_band_row = 3 * record.first_row;
-        record.first_code = asset.transport.code8.size();
-        if (p == 0) {
-            asset.transport = tests::random_rows(8, 8, 3, 31);
-        } else {
-            formats::append_rows(asset.transport, tests::random_rows(8, 8, 3, 31 + p));
-        }
-        record.vertex_count = asset.transport.view().rows() - record.first_row;
-        asset.primitives.push_back(record);
+        tests::add_random_primitive(asset, 8, record, 31 + p);
         GlossRecord gloss;
         gloss.metallic = p == 0 ? 1.0f : 0.5f;
         gloss.roughness = p == 2 ? formats::kNotGlossy : 0.5f;
@@ -170,14 +158,9 @@ Asset make_glossy_asset(float open = 1) {
         asset.gloss.push_back(gloss);
         asset.roughness.push_back(formats::kNotGlossy);
     }
-    for (std::uint32_t v = 0; v < asset.transport.view().rows(); ++v) {
-        const float t = static_cast<float>(v);
-        asset.normal.push_back(
-            normalize(Vec3{std::sin(2 * t), std::cos(3 * t), std::sin(5 * t + 1)}));
-        asset.position.push_back(0.5f * asset.normal.back());
-        asset.base_color.push_back({0.5f, 0.25f, 1});
+    for (const Vec3 normal : asset.normal) {
         asset.texcoord.push_back({0.75f, 0.5f});  // the centre of the right texel
-        asset.openness.push_back(formats::encode_openness(asset.normal.back(), open));
+        asset.openness.push_back(formats::encode_openness(normal, open));
     }
     return asset;
 }
@@ -185,9 +168,7 @@ Asset make_glossy_asset(float open = 1) {
 class GlossShade : public testing::Test {
   protected:
     std::vector<Rgb> shaded(const Asset& asset, const ShadeOptions& options) {
-        std::vector<Rgb> out(asset.position.size());
-        shade(asset.view(), light_, out, options);
-        return out;
+        return tests::shaded(asset, light_, options);
     }
     Environment sky_ = tests::lat_long_map(64, 32, tests::smooth_sky);
     LightVector light_ = project_environment(sky_, 8);

@@ -8,7 +8,7 @@
 
 #include "runtime/texture.h"
 #include "tests/runtime/light_test_support.h"
-#include "tests/runtime/row_test_support.h"
+#include "tests/runtime/shade_test_support.h"
 
 namespace opaline::runtime {
 namespace {
@@ -20,23 +20,16 @@ using formats::Rgb;
 /// A grey primitive and a textured RGB one of random rows, and one vertex of neither.
 Asset make_flat_asset(std::uint32_t n) {
     Asset asset;
-    asset.transport = tests::random_rows(n, 8, 1, 11);
-    PrimitiveRecord grey;
-    grey.vertex_count = asset.transport.view().rows();
-    PrimitiveRecord rgb = grey;
+    asset.transport = formats::make_sparse_rows(n, 8);
+    tests::add_random_primitive(asset, n, {}, 11);
+    PrimitiveRecord rgb;
     rgb.bands = 3;
-    rgb.first_vertex = grey.vertex_count;
-    rgb.first_row = grey.vertex_count;
-    rgb.first_band_row = grey.vertex_count;
-    rgb.first_code = asset.transport.code8.size();
     rgb.base_color_image = 0;
-    formats::append_rows(asset.transport, tests::random_rows(n, 8, 3, 12));
-    asset.primitives = {grey, rgb};
-    const std::size_t vertices = 2 * std::size_t{grey.vertex_count} + 1;
-    asset.position.resize(vertices);
-    asset.normal.resize(vertices, {0, 1, 0});
-    asset.base_color.resize(vertices, {0.5f, 0.25f, 1});
-    for (std::size_t v = 0; v < vertices; ++v) {
+    tests::add_random_primitive(asset, n, rgb, 12);
+    asset.position.emplace_back();
+    asset.normal.push_back({0, 1, 0});
+    asset.base_color.push_back({0.5f, 0.25f, 1});
+    for (std::size_t v = 0; v < asset.position.size(); ++v) {
         asset.texcoord.push_back({0.01f * static_cast<float>(v), 0.3f});
     }
     asset.images.push_back({2, 2, {10, 20, 30, 200, 100, 50, 255, 255, 255, 0, 128, 0}});
@@ -47,9 +40,8 @@ TEST(Shade, RadianceIsBaseColourTimesTheDotProductAndNotBelowZero) {
     const Asset asset = make_flat_asset(8);
     const formats::AssetView view = asset.view();
     const LightVector light = tests::random_light(8, 13);
-    std::vector<Rgb> out(view.receivers()), white(view.receivers());
-    shade(view, light, out);
-    shade(view, light, white, {.base_color = false});
+    const auto out = tests::shaded(asset, light),
+               white = tests::shaded(asset, light, {.base_color = false});
     std::size_t black = 0;
     for (const PrimitiveRecord& p : view.primitives) {
         std::vector<Rgb> sum(p.vertex_count);
@@ -67,21 +59,7 @@ TEST(Shade, RadianceIsBaseColourTimesTheDotProductAndNotBelowZero) {
 }
 
 TEST(Shade, ThreadsAndRangesDoNotChangeABit) {
-    const Asset asset = make_flat_asset(8);
-    const formats::AssetView view = asset.view();
-    const LightVector light = tests::random_light(8, 14);
-    std::vector<Rgb> one(view.receivers());
-    shade(view, light, one, {.threads = 1});
-    for (const unsigned threads : {2u, 5u}) {
-        std::vector<Rgb> many(view.receivers());
-        shade(view, light, many, {.threads = threads});
-        EXPECT_EQ(many, one);
-    }
-    for (std::uint32_t first = 0; first < one.size(); first += 17) {
-        std::vector<Rgb> part(std::min<std::size_t>(30, one.size() - first));
-        shade_range(view, light, first, part);
-        EXPECT_TRUE(std::equal(part.begin(), part.end(), one.begin() + first)) << first;
-    }
+    tests::expect_same_in_threads_and_ranges(make_flat_asset(8), tests::random_light(8, 14));
 }
 
 // An unoccluded diffuse receiver under a white sky has its albedo as radiance. All coefficients
@@ -120,8 +98,7 @@ TEST(Shade, WhiteFurnaceGivesTheAlbedo) {
                                                                           return Rgb{1, 1, 1};
                                                                       }),
                                                   n);
-    std::vector<Rgb> out(1);
-    shade(asset.view(), white, out);
+    const std::vector<Rgb> out = tests::shaded(asset, white);
     // The plane meets texel borders, so only 16-bit quantisation is left.
     EXPECT_NEAR(out[0].r, 0.8f, 1e-4f);
     EXPECT_NEAR(out[0].b, 0.2f, 1e-4f);
@@ -132,11 +109,7 @@ TEST(Shade, OverflowingSumsAreShownAsFiniteNumbers) {
     for (float& scale : asset.transport.detail_scale) {
         scale = std::numeric_limits<float>::max();
     }
-    std::vector<Rgb> out(asset.position.size());
-    shade(asset.view(), tests::random_light(8, 15), out);
-    for (const Rgb c : out) {
-        EXPECT_TRUE(std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b));
-    }
+    tests::expect_finite(tests::shaded(asset, tests::random_light(8, 15)));
 }
 
 }  // namespace

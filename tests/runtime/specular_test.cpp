@@ -7,9 +7,8 @@
 #include <numbers>
 
 #include "formats/opal/cubemap.h"
-#include "runtime/shade.h"
 #include "tests/runtime/light_test_support.h"
-#include "tests/runtime/row_test_support.h"
+#include "tests/runtime/shade_test_support.h"
 
 namespace opaline::runtime {
 namespace {
@@ -21,14 +20,6 @@ using formats::TermSet;
 using formats::Vec3;
 
 constexpr std::uint32_t kAllLevels[] = {0, 8, 20, 40};
-
-Environment even_sky(Rgb radiance) {
-    return tests::lat_long_map(64, 32, [radiance](Vec3) { return radiance; });
-}
-
-ViewOfReceiver mirrored_at(float cosine) {
-    return {{0, 1, 0}, {std::sqrt(1 - cosine * cosine), cosine, 0}, cosine, false};
-}
 
 /// The plain sum over a cube map of n x n texels.
 double convolve(const Environment& map, Vec3 r, double alpha, std::uint32_t n) {
@@ -49,7 +40,8 @@ double convolve(const Environment& map, Vec3 r, double alpha, std::uint32_t n) {
 }
 
 TEST(SpecularLight, UniformLightStaysUniformAtEveryRoughness) {
-    const SpecularLight light = prefilter_specular(even_sky({1, 2, 0.5f}), kAllLevels, {}, 0);
+    const SpecularLight light =
+        prefilter_specular(tests::even_sky({1, 2, 0.5f}), kAllLevels, {}, 0);
     ASSERT_EQ(light.maps.size(), std::size(kAllLevels));
     for (const SpecularLight::Map& map : light.maps) {
         for (const Rgb c : map.radiance.pixel) {
@@ -111,7 +103,7 @@ TEST(SpecularLight, ASunKeepsItsFluxAndItsPlace) {
 
 TEST(SpecularLight, StaysFiniteUnderAbsurdLight) {
     const float largest = std::numeric_limits<float>::max();
-    Environment environment = even_sky({largest, 0, 1e-38f});
+    Environment environment = tests::even_sky({largest, 0, 1e-38f});
     environment.discs = {{{0, 1, 0}, 0.1f, {largest, largest, 0}}};
     const SpecularLight light = prefilter_specular(environment, kAllLevels, {}, 0);
     for (const SpecularLight::Map& map : light.maps) {
@@ -122,16 +114,6 @@ TEST(SpecularLight, StaysFiniteUnderAbsurdLight) {
     }
     const SpecularLight black = prefilter_specular({}, kAllLevels, {}, 0);
     EXPECT_EQ(black.maps[2].radiance.pixel[100], Rgb{});
-}
-
-TEST(SpecularLight, HasTheSameBitsForAnyNumberOfThreads) {
-    constexpr std::uint32_t kSomeLevels[] = {8, 40};
-    const Environment sky = tests::lat_long_map(64, 32, tests::smooth_sky);
-    const SpecularLight one = prefilter_specular(sky, kSomeLevels, {}, 1);
-    const SpecularLight three = prefilter_specular(sky, kSomeLevels, {}, 3);
-    for (std::size_t i = 0; i < one.maps.size(); ++i) {
-        EXPECT_EQ(one.maps[i].radiance.pixel, three.maps[i].radiance.pixel);
-    }
 }
 
 TEST(SpecularVisibility, OpenIsOneAndClosedIsNothingWhateverTheDirections) {
@@ -160,24 +142,16 @@ TEST(SpecularVisibility, OpenIsOneAndClosedIsNothingWhateverTheDirections) {
     EXPECT_LT(specular_visibility({0, 0, 1}, 0.25f, normalize(Vec3{1, 0, 1}), sharp), 0.01f);
 }
 
-Asset make_mirror_asset(float roughness, std::uint32_t flags = 0) {
+Asset make_mirror_asset(float roughness) {
     Asset asset;
-    asset.transport = tests::random_rows(8, 8, 3, 31);
     formats::PrimitiveRecord record;
     record.shading = formats::Shading::translucent;
     record.bands = 3;
     record.eta = 1.5f;
-    record.flags = flags;
-    record.vertex_count = asset.transport.view().rows();
-    asset.primitives = {record};
+    tests::add_random_primitive(asset, 8, record, 31);
     asset.roughness = {roughness};
-    for (std::uint32_t v = 0; v < record.vertex_count; ++v) {
-        const float t = static_cast<float>(v);
-        asset.normal.push_back(
-            normalize(Vec3{std::sin(2 * t), std::cos(3 * t), std::sin(5 * t + 1)}));
-        asset.position.push_back(0.5f * asset.normal.back());
-        asset.base_color.push_back({0.5f, 0.25f, 1});
-        asset.openness.push_back(formats::encode_openness(asset.normal.back(), 1));
+    for (const Vec3 normal : asset.normal) {
+        asset.openness.push_back(formats::encode_openness(normal, 1));
     }
     return asset;
 }
@@ -186,11 +160,11 @@ TEST(Specular, OpenReceiverUnderWhiteMirrorsWhatItDoesNotLetThrough) {
     for (const float roughness : {0.2f, 0.5f, 1.0f}) {
         const Asset asset = make_mirror_asset(roughness);
         const SpecularLight light =
-            prefilter_specular(even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
+            prefilter_specular(tests::even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
         const SpecularLobe lobe = specular_lobe(light, asset.view(), 0);
         ASSERT_NE(lobe.radiance, nullptr);
         for (float c = 0.01f; c <= 1; c += 0.03f) {
-            const Rgb mirrored = eval_specular(light, lobe, mirrored_at(c), 1.5f, {0, 1, 0}, 1);
+            const Rgb mirrored = eval_specular(light, lobe, tests::seen_at(c), 1.5f, {0, 1, 0}, 1);
             EXPECT_NEAR(mirrored.g + fresnel_transmittance(c, 1.5f), 1, 3e-6f) << c;
         }
     }
@@ -224,10 +198,10 @@ TEST(Specular, MirrorsTheLightWhereTheLawOfReflectionSaysAndTurnsWithIt) {
 TEST(Specular, FadesBehindTheSilhouetteAndIsBlackWithoutANormal) {
     const Asset asset = make_mirror_asset(0.2f);
     const SpecularLight light =
-        prefilter_specular(even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
+        prefilter_specular(tests::even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
     const SpecularLobe lobe = specular_lobe(light, asset.view(), 0);
     const auto at = [&](float cosine) {
-        return eval_specular(light, lobe, mirrored_at(cosine), 1.5f, {0, 1, 0}, 1).r;
+        return eval_specular(light, lobe, tests::seen_at(cosine), 1.5f, {0, 1, 0}, 1).r;
     };
     EXPECT_NEAR(at(0.0f), 1, 1e-5f);
     EXPECT_NEAR(at(-0.1f), 0.5f, 1e-4f);
@@ -246,9 +220,7 @@ TEST(Specular, ShadingAddsItToGlossyPrimitivesAloneAndOnlyWithItsLight) {
     const SpecularLight specular = prefilter_specular(sky, roughness_levels(glossy.view()), {}, 1);
     const LightVector light = project_environment(sky, 8);
     const auto shaded = [&](const Asset& asset, const ShadeOptions& options) {
-        std::vector<Rgb> out(asset.position.size());
-        shade(asset.view(), light, out, options);
-        return out;
+        return tests::shaded(asset, light, options);
     };
     const Vec3 eye{0, 0, 5};
     const auto bare = shaded(glossy, {.eye = eye});

@@ -2,10 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include "runtime/shade.h"
 #include "runtime/view_terms.h"
 #include "tests/runtime/light_test_support.h"
-#include "tests/runtime/row_test_support.h"
+#include "tests/runtime/shade_test_support.h"
 
 namespace opaline::runtime {
 namespace {
@@ -19,30 +18,17 @@ using formats::Vec3;
 /// A grey diffuse and a glossy translucent primitive with `terms` rows a vertex, radiance above 0.
 Asset make_layered_asset(std::uint32_t terms, bool is_separate) {
     Asset asset;
-    asset.transport = tests::random_rows(8, 8, 1, 31);
-    PrimitiveRecord grey;
-    grey.vertex_count = asset.transport.view().rows();
+    tests::add_random_primitive(asset, 8, {}, 31);
     PrimitiveRecord record;
     record.shading = formats::Shading::translucent;
     record.terms = terms;
     record.bands = 3;
     record.eta = 1.4f;
     record.flags = is_separate ? PrimitiveRecord::kSeparate : 0;
-    record.first_vertex = record.first_row = record.first_band_row = grey.vertex_count;
-    record.first_code = asset.transport.code8.size();
-    for (std::uint32_t k = 0; k < terms; ++k) {
-        formats::append_rows(asset.transport, tests::random_rows(8, 8, 3, 40 + k));
-    }
-    record.vertex_count = (asset.transport.view().rows() - grey.vertex_count) / terms;
-    asset.primitives = {grey, record};
+    tests::add_random_primitive(asset, 8, record, 40);
     asset.roughness = {formats::kNotGlossy, 0.25f};
-    for (std::uint32_t v = 0; v < grey.vertex_count + record.vertex_count; ++v) {
-        const float t = static_cast<float>(v);
-        asset.normal.push_back(
-            normalize(Vec3{std::sin(2 * t), std::cos(3 * t), std::sin(5 * t + 1)}));
-        asset.position.push_back(0.5f * asset.normal.back());
-        asset.base_color.push_back({0.5f, 0.25f, 1});
-        asset.openness.push_back(formats::encode_openness(asset.normal.back(), 0.7f));
+    for (const Vec3 normal : asset.normal) {
+        asset.openness.push_back(formats::encode_openness(normal, 0.7f));
     }
     return asset;
 }
@@ -50,10 +36,9 @@ Asset make_layered_asset(std::uint32_t terms, bool is_separate) {
 class Terms : public testing::Test {
   protected:
     std::vector<Rgb> shaded(const Asset& asset, TermSet terms, bool fresnel = true) {
-        std::vector<Rgb> out(asset.position.size());
-        shade(asset.view(), light_, out,
-              {.eye = Vec3{0, 2, 5}, .fresnel = fresnel, .terms = terms, .specular = &specular_});
-        return out;
+        return tests::shaded(
+            asset, light_,
+            {.eye = Vec3{0, 2, 5}, .fresnel = fresnel, .terms = terms, .specular = &specular_});
     }
     formats::Environment sky_ = tests::lat_long_map(64, 32, tests::smooth_sky);
     LightVector light_ = project_environment(sky_, 8);

@@ -3,9 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/shade.h"
 #include "runtime/view_terms.h"
-#include "tests/runtime/row_test_support.h"
+#include "tests/runtime/shade_test_support.h"
 
 namespace opaline::runtime {
 namespace {
@@ -14,37 +13,20 @@ using formats::Asset;
 using formats::PrimitiveRecord;
 using formats::Rgb;
 using formats::Vec3;
+using tests::shaded;
 
 /// A grey diffuse primitive, then a translucent one of random rows with `terms` rows a vertex and
 /// normals in all directions.
 Asset make_translucent_asset(std::uint32_t terms, float eta = 1.3f, std::uint32_t flags = 0) {
     Asset asset;
-    asset.transport = tests::random_rows(8, 8, 1, 31);
-    PrimitiveRecord grey;
-    grey.vertex_count = asset.transport.view().rows();
+    tests::add_random_primitive(asset, 8, {}, 31);
     PrimitiveRecord record;
     record.shading = formats::Shading::translucent;
     record.terms = terms;
     record.bands = 3;
     record.eta = eta;
     record.flags = flags;
-    record.first_vertex = grey.vertex_count;
-    record.first_row = grey.vertex_count;
-    record.first_band_row = grey.vertex_count;
-    record.first_code = asset.transport.code8.size();
-    for (std::uint32_t k = 0; k < 2 * terms; ++k) {  // 82 vertices: over a block for many terms
-        formats::append_rows(asset.transport, tests::random_rows(8, 8, 3, 40 + k));
-    }
-    record.vertex_count = (asset.transport.view().rows() - grey.vertex_count) / terms;
-    asset.primitives = {grey, record};
-    const std::uint32_t vertices = grey.vertex_count + record.vertex_count;
-    for (std::uint32_t v = 0; v < vertices; ++v) {
-        const float t = static_cast<float>(v);
-        asset.normal.push_back(
-            normalize(Vec3{std::sin(2 * t), std::cos(3 * t), std::sin(5 * t + 1)}));
-        asset.position.push_back(0.5f * asset.normal.back());
-        asset.base_color.push_back({0.5f, 0.25f, 1});
-    }
+    tests::add_random_primitive(asset, 8, record, 40, 2);  // over a block for many terms
     return asset;
 }
 
@@ -62,8 +44,7 @@ TEST(TranslucentShade, AddsAllTermsAtTheRefractedDirectionToTheEye) {
     for (const std::uint32_t terms : {1u, 4u, 9u, 16u, 25u}) {
         const Asset asset = make_translucent_asset(terms);
         const LightVector light = tests::random_light(8, 5);
-        std::vector<Rgb> out(asset.position.size());
-        shade(asset.view(), light, out, {.eye = eye});
+        const std::vector<Rgb> out = shaded(asset, light, {.eye = eye});
         std::size_t lit = 0;
         for (std::uint32_t v = asset.primitives[1].first_vertex; v < out.size(); ++v) {
             const Vec3 w = normalize(eye - asset.position[v]), n = asset.normal[v];
@@ -95,11 +76,9 @@ TEST(TranslucentShade, AddsAllTermsAtTheRefractedDirectionToTheEye) {
 TEST(TranslucentShade, WithoutAnEyeEachReceiverIsSeenAlongItsNormal) {
     const Asset asset = make_translucent_asset(4);
     const LightVector light = tests::random_light(8, 6);
-    std::vector<Rgb> out(asset.position.size()), near(out.size());
-    shade(asset.view(), light, out);
+    const std::vector<Rgb> out = shaded(asset, light);
     for (std::uint32_t v = asset.primitives[1].first_vertex; v < out.size(); v += 3) {
-        std::vector<Rgb> all(out.size());
-        shade(asset.view(), light, all, {.eye = asset.position[v] + 2.0f * asset.normal[v]});
+        const auto all = shaded(asset, light, {.eye = asset.position[v] + 2.0f * asset.normal[v]});
         EXPECT_NEAR(out[v].r, all[v].r, 1e-5f * (1 + out[v].r));
         EXPECT_NEAR(out[v].b, all[v].b, 1e-5f * (1 + out[v].b));
     }
@@ -108,9 +87,8 @@ TEST(TranslucentShade, WithoutAnEyeEachReceiverIsSeenAlongItsNormal) {
 TEST(TranslucentShade, DiffuseReceiversDoNotDependOnTheEyeByABit) {
     const Asset asset = make_translucent_asset(4);
     const LightVector light = tests::random_light(8, 7);
-    std::vector<Rgb> here(asset.position.size()), there(here.size());
-    shade(asset.view(), light, here);
-    shade(asset.view(), light, there, {.eye = Vec3{1, 2, 3}, .fresnel = false});
+    const auto here = shaded(asset, light),
+               there = shaded(asset, light, {.eye = Vec3{1, 2, 3}, .fresnel = false});
     const std::uint32_t first = asset.primitives[1].first_vertex;
     EXPECT_TRUE(std::equal(here.begin(), here.begin() + first, there.begin()));
     EXPECT_FALSE(std::equal(here.begin() + first, here.end(), there.begin() + first));
@@ -121,9 +99,7 @@ TEST(TranslucentShade, BackFacesAreBlackUnlessDoubleSided) {
     const Asset single = make_translucent_asset(4),
                 both = make_translucent_asset(4, 1.3f, PrimitiveRecord::kDoubleSided);
     const LightVector light = tests::random_light(8, 8);
-    std::vector<Rgb> a(single.position.size()), b(a.size());
-    shade(single.view(), light, a, {.eye = eye});
-    shade(both.view(), light, b, {.eye = eye});
+    const auto a = shaded(single, light, {.eye = eye}), b = shaded(both, light, {.eye = eye});
     std::size_t behind = 0, seen = 0;
     for (std::uint32_t v = single.primitives[1].first_vertex; v < a.size(); ++v) {
         if (dot(single.normal[v], eye - single.position[v]) > 0) {
@@ -140,23 +116,12 @@ TEST(TranslucentShade, BackFacesAreBlackUnlessDoubleSided) {
 
 TEST(TranslucentShade, ThreadsRangesAndPathsAgree) {
     const Asset asset = make_translucent_asset(25);
-    const formats::AssetView view = asset.view();
     const LightVector light = tests::random_light(8, 9);
-    const ShadeOptions options{.threads = 1, .eye = Vec3{0, 3, 3}};
-    std::vector<Rgb> one(view.receivers());
-    shade(view, light, one, options);
-    for (std::uint32_t first = 0; first < one.size(); first += 17) {
-        std::vector<Rgb> part(std::min<std::size_t>(30, one.size() - first));
-        shade_range(view, light, first, part, options);
-        EXPECT_TRUE(std::equal(part.begin(), part.end(), one.begin() + first)) << first;
-    }
-    ShadeOptions other = options;
-    other.threads = 3;
-    std::vector<Rgb> many(view.receivers());
-    shade(view, light, many, other);
-    EXPECT_EQ(many, one);
-    other.path = DotPath::scalar;
-    shade(view, light, many, other);
+    ShadeOptions options{.eye = Vec3{0, 3, 3}};
+    tests::expect_same_in_threads_and_ranges(asset, light, options);
+    const auto one = shaded(asset, light, options);
+    options.path = DotPath::scalar;
+    const auto many = shaded(asset, light, options);
     for (std::size_t v = 0; v < one.size(); ++v) {
         EXPECT_NEAR(many[v].r, one[v].r, 1e-4f) << v;  // sums of 25 dot products of order 1
     }
@@ -165,8 +130,8 @@ TEST(TranslucentShade, ThreadsRangesAndPathsAgree) {
 TEST(TranslucentShade, WithoutFresnelKeepsTheSignThatAPixelClampsLater) {
     const Asset asset = make_translucent_asset(1);
     const LightVector light = tests::random_light(8, 10);
-    std::vector<Rgb> out(asset.position.size());
-    shade(asset.view(), light, out, {.base_color = false, .eye = Vec3{0, 3, 3}, .fresnel = false});
+    const auto out =
+        shaded(asset, light, {.base_color = false, .eye = Vec3{0, 3, 3}, .fresnel = false});
     std::size_t negative = 0;
     for (std::uint32_t v = asset.primitives[1].first_vertex; v < out.size(); ++v) {
         EXPECT_EQ(out[v], product(asset, light, v, 0));
@@ -185,12 +150,9 @@ TEST(TranslucentShade, NothingButFiniteNumbersComesOut) {
     asset.normal[61] = {std::nanf(""), 0, 0};
     asset.position[62] = {largest, -largest, largest};
     for (const bool fresnel : {true, false}) {
-        std::vector<Rgb> out(asset.position.size());
-        shade(asset.view(), tests::random_light(8, 11), out,
-              {.eye = Vec3{-largest, 0, 0}, .fresnel = fresnel});
-        for (const Rgb c : out) {
-            EXPECT_TRUE(std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b));
-        }
+        const auto out = shaded(asset, tests::random_light(8, 11),
+                                {.eye = Vec3{-largest, 0, 0}, .fresnel = fresnel});
+        tests::expect_finite(out);
         if (fresnel) {
             EXPECT_EQ(out[60], Rgb{});
         }

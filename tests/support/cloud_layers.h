@@ -157,4 +157,12 @@ inline formats::Clouds make_test_clouds(
     return clouds;
 }
 
+/// Squares of the ground by turns of two colours.
+inline void paint_squares(formats::Clouds& clouds, std::uint8_t first, std::uint8_t second) {
+    for (std::size_t i = 0; i < clouds.ground.size(); ++i) {
+        const std::uint8_t code = i % 2 == 0 ? first : second;
+        clouds.ground[i] = {code, 120, static_cast<std::uint8_t>(255 - code), 255};
+    }
+}
+
 }  // namespace opaline::test

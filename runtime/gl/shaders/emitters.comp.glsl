@@ -21,9 +21,7 @@ float tame(float value) {
 
 void main() {
     uint row = gl_GlobalInvocationID.x;
-    if (row >= results) {
-        return;
-    }
+    if (row >= results) return;
     uint at = value_origin + 3u * row;
     vec3 sum = result[result_origin + row].rgb +
                color * vec3(half_float(at), half_float(at + 1u), half_float(at + 2u));

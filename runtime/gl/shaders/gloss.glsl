@@ -143,9 +143,7 @@ LobeIntegral sum_taps(vec2 table, float alpha, Frame f) {
         phi = vec2(phi.x * kCosGolden - phi.y * kSinGolden, phi.y * kCosGolden + phi.x * kSinGolden);
         float v_h = s * h.x + c * h.z;
         vec3 local = vec3(2.0 * v_h * h.x - s, 2.0 * v_h * h.y, 2.0 * v_h * h.z - c);
-        if (!(local.z > 0.0)) {
-            continue;
-        }
+        if (!(local.z > 0.0)) continue;
         vec3 l = local.x * f.tangent + local.y * f.bitangent + local.z * f.normal;
         float root_l = smith_root(local.z, a2) / local.z;
         float pdf = ggx_distribution(h.z, alpha) / (2.0 * c * (1.0 + root_v));
@@ -170,9 +168,7 @@ LobeIntegral sum_cells(vec2 table, float alpha, Frame f) {
         Cell cell = cell_at(i);
         vec3 direction = cell.direction_solid_angle.xyz;
         float n_l = dot(f.normal, direction);
-        if (!(n_l > 0.0)) {
-            continue;
-        }
+        if (!(n_l > 0.0)) continue;
         float h_h = max(2.0 + 2.0 * dot(f.eye, direction), 1e-12);
         float n_h = c + n_l, n_h_squared = n_h * n_h / h_h;
         float wide = a2 + cell.flux_widening.w;
@@ -194,9 +190,7 @@ void add_suns(float alpha, Frame f, inout LobeIntegral result) {
         vec3 direction = sun.direction_radius.xyz;
         float radius = sun.direction_radius.w;
         float n_l = dot(f.normal, direction);
-        if (!(n_l > 0.0)) {
-            continue;
-        }
+        if (!(n_l > 0.0)) continue;
         vec3 h = normalize(f.eye + direction);
         float wide = sqrt(alpha * alpha + 0.25 * radius * radius), a2 = wide * wide;
         float visibility =
@@ -211,9 +205,7 @@ void add_suns(float alpha, Frame f, inout LobeIntegral result) {
 
 // L_spec without openness; n and w in the light's frame.
 vec3 eval_gloss(Gloss g, vec3 n, vec3 w, float cosine) {
-    if (!(dot(n, n) > 0.0) || !(cosine > -0.2)) {
-        return vec3(0.0);
-    }
+    if (!(dot(n, n) > 0.0) || !(cosine > -0.2)) return vec3(0.0);
     float fade = 1.0 + min(cosine, 0.0) / 0.2;
     Frame f = make_frame(n, w, clamp(cosine, kLeastCosine, 1.0));
     vec2 table = ggx_albedo(f.cosine, g.roughness);
@@ -236,9 +228,7 @@ vec3 eval_gloss(Gloss g, vec3 n, vec3 w, float cosine) {
 float gloss_visibility(Gloss g, OpalineView view, vec4 openness) {
     vec3 mirrored = opaline_unit_or_zero(2.0 * clamp(view.cosine, kLeastCosine, 1.0) * view.normal -
                                          view.to_eye);
-    if (!(dot(mirrored, mirrored) > 0.0)) {
-        return 0.0;
-    }
+    if (!(dot(mirrored, mirrored) > 0.0)) return 0.0;
     float a2 = max(g.alpha, 0.05) * max(g.alpha, 0.05);
     vec2 half_angle = vec2(1.0 - a2, 2.0 * max(g.alpha, 0.05)) / (1.0 + a2);
     return opaline_specular_visibility(opaline_open_axis(openness, view), clamp(openness.w, 0.0, 1.0),
@@ -263,9 +253,7 @@ vec3 glossy_mirrored(Gloss g, mat3 light_from_world, OpalineView view, vec4 open
 // runtime/surface.cpp: `radiance` of its receivers is what they send to it.
 vec3 glossy_mirrored_surfaces(Gloss g, vec3 radiance, OpalineView view, vec4 openness) {
     float covered = 1.0 - openness.w;
-    if (g.diffuse > 0.0 || covered < 1.0 / 64.0) {
-        return vec3(0.0);
-    }
+    if (g.diffuse > 0.0 || covered < 1.0 / 64.0) return vec3(0.0);
     vec2 table = ggx_albedo(clamp(abs(view.cosine), kLeastCosine, 1.0), g.roughness);
     vec3 mirrors = gloss_compensation(g, table) * (table.x * g.f0 + g.f90 * table.y);
     float blocked = 1.0 - gloss_visibility(g, view, openness);

@@ -11,9 +11,7 @@ float linear_from_srgb(uint code) { return srgb_table[code]; }
 #endif
 
 int wrap_texel(int i, int size, int mode) {
-    if (mode == WRAP_CLAMP) {
-        return clamp(i, 0, size - 1);
-    }
+    if (mode == WRAP_CLAMP) return clamp(i, 0, size - 1);
     int period = mode == WRAP_MIRROR ? 2 * size : size;
     i = (i + period) % period;  // i >= -1; of negative numbers GLSL leaves % undefined
     return i < size ? i : period - 1 - i;

@@ -151,9 +151,7 @@ struct SeenLayer {
 
 SeenLayer see_layer(LayerRay ray, bool with_glow) {
     LayerMarch march = march_layer(ray, rest_kappa_peak.g);
-    if (!(march.length > 0.0)) {
-        return SeenLayer(vec3(0.0), vec3(0.0), vec3(1.0), vec3(1.0), 0.0);
-    }
+    if (!(march.length > 0.0)) return SeenLayer(vec3(0.0), vec3(0.0), vec3(1.0), vec3(1.0), 0.0);
     vec3 depth = march.length * rest_kappa_peak.rgb;
     vec3 share = taken_shares(depth);
     vec3 own = haze_over(share * own_source(ray, march), march.distance, share);

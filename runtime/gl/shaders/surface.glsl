@@ -100,9 +100,7 @@ vec3 opaline_turn_light(OpalineTurnedLight light, vec3 radiance, vec3 from, vec3
 float opaline_transmittance(float cosine, float eta) {
     float c = min(cosine, 1.0);
     float under_root = (eta - 1.0) * (eta + 1.0) + c * c;
-    if (!(c > 0.0) || !(under_root > 0.0)) {
-        return 0.0;
-    }
+    if (!(c > 0.0) || !(under_root > 0.0)) return 0.0;
     float behind = sqrt(under_root);
     float s = c + behind, p = eta * eta * c + behind;
     return min(2.0 * c * behind * (1.0 / (s * s) + eta * eta / (p * p)), 1.0);
@@ -142,15 +140,11 @@ float opaline_specular_visibility(vec3 axis, float open, vec3 mirrored, vec2 lob
 vec3 opaline_mirrored(sampler2DArray light, mat3 light_from_world, OpalineView view, float eta,
                       vec4 openness, vec2 lobe) {
     vec3 n = view.normal;
-    if (!(dot(n, n) > 0.0) || !(view.cosine > -0.2)) {
-        return vec3(0.0);
-    }
+    if (!(dot(n, n) > 0.0) || !(view.cosine > -0.2)) return vec3(0.0);
     float c = clamp(view.cosine, 1e-6, 1.0);
     float fade = 1.0 + min(view.cosine, 0.0) / 0.2;
     vec3 mirrored = opaline_unit_or_zero(2.0 * c * n - view.to_eye);
-    if (!(dot(mirrored, mirrored) > 0.0)) {
-        return vec3(0.0);
-    }
+    if (!(dot(mirrored, mirrored) > 0.0)) return vec3(0.0);
     float share = fade * (1.0 - opaline_transmittance(c, eta)) *
                   opaline_specular_visibility(opaline_open_axis(openness, view),
                                               clamp(openness.w, 0.0, 1.0), mirrored, lobe);

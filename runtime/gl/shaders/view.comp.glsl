@@ -49,9 +49,7 @@ vec3 sum_of(uint vertex, uint at) {
 
 void main() {
     uint vertex = gl_GlobalInvocationID.x;
-    if (vertex >= vertices) {
-        return;
-    }
+    if (vertex >= vertices) return;
     vec3 sum = vec3(0.0);
 #ifdef SHEET
     bool is_behind = dot(normal_of(vertex), from_vertex_to_eye(vertex)) < 0.0;

@@ -8,16 +8,12 @@ vec3 refract_to_eye(vec3 n, vec3 w, float c, float eta) {
     vec3 tangent = w - c * n;
     if (c < 0.0) {
         float size = length(tangent);
-        if (!(size > 0.0)) {
-            return n;
-        }
+        if (!(size > 0.0)) return n;
         tangent /= size;
         c = 0.0;
     }
     float under_root = (eta - 1.0) * (eta + 1.0) + c * c;
-    if (under_root > 0.0) {
-        return (tangent + sqrt(under_root) * n) / eta;
-    }
+    if (under_root > 0.0) return (tangent + sqrt(under_root) * n) / eta;
     float size = length(tangent);
     return size > 0.0 ? tangent / size : n;
 }

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "runtime/api_support.h"
 #include "runtime/holes.h"
 #include "runtime/normal_maps/normal_map.h"
 #include "runtime/normal_maps/turned_light.h"
@@ -43,6 +42,7 @@ std::vector<HostRay> image_samples() {
                            {static_cast<float>(i % 97), static_cast<float>(i % 31), 0},
                            0});
     }
+    samples.push_back({{NAN, INFINITY, 0}, 0.45f, {0, 0, 0}, 0});
     return samples;
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/picture/camera.h"
 #include "tests/bench/gl_parity/comparisons.h"
 #include "tests/bench/gl_parity/conditioning.h"
+#include "tests/runtime/embed_gl/camera_rays.h"
 #include "tests/runtime/embed_gl/host/host_layer.h"
 
 namespace opaline::parity {
@@ -28,13 +29,7 @@ struct ReleaseLayer {
 };
 
 runtime::Camera camera_at(Vec3 eye, Vec3 target) {
-    runtime::Camera camera;
-    camera.eye = eye;
-    camera.target = target;
-    camera.fov_y = 60;
-    camera.width = 24;
-    camera.height = 18;
-    return camera;
+    return {.eye = eye, .target = target, .fov_y = 60, .width = 24, .height = 18, .near_plane = 1};
 }
 
 // From below, above, beside and within the layer.
@@ -51,17 +46,6 @@ std::array<std::pair<const char*, runtime::Camera>, 4> viewpoints(
          {"from within, ray",
           camera_at(from(0.3f * high, base + 0.3f * layer.highest, 0.2f * high),
                     from(0.9f * high, base + 0.4f * layer.highest, -0.3f * high))}}};
-}
-
-std::vector<HostRay> camera_rays(const runtime::Camera& camera) {
-    const runtime::CameraFrame frame = runtime::camera_frame(camera);
-    std::vector<HostRay> rays;
-    for (std::uint32_t i = 0; i < camera.width * camera.height; ++i) {
-        const Vec3 d =
-            runtime::view_ray(camera, frame, i % camera.width + 0.5, i / camera.width + 0.5);
-        rays.push_back({{0, 0, 0}, 1, {d.x, d.y, d.z}, i % 5 == 0 ? 1500.0f : 1e30f});
-    }
-    return rays;
 }
 
 // What rays see of the layer: three bands of its light, four shares that pass, and the distance of
@@ -102,9 +86,10 @@ Seen split(const std::vector<float>& drawn) {
 void compare_view(const Case& in, const runtime::LayerLight& light, test::HostPicture& picture,
                   const std::string& name, const runtime::Camera& camera) {
     const Vec3 eye = camera.eye;
-    const float from[3] = {eye.x, eye.y, eye.z};
-    test::require(opaline_gl_look_from(in.gl, from) == OPALINE_OK, opaline_last_error());
-    const std::vector<HostRay> rays = camera_rays(camera);
+    test::require(opaline_gl_look_from(in.gl, &eye.x) == OPALINE_OK, opaline_last_error());
+    std::vector<HostRay> rays = test::camera_rays(camera);
+    for (std::size_t i = 0; i < rays.size(); i += 5)
+        rays[i].end = 1500;
     Seen gl = split(picture.draw(rays));
     const Seen cpu = see_on_cpu(light, eye, rays);
     std::vector<float> distances = cpu.distance;

@@ -1,7 +1,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "runtime/api_support.h"
 #include "runtime/picture/camera.h"
 #include "tests/bench/gl_parity/comparisons.h"
 #include "tests/bench/gl_parity/conditioning.h"
@@ -54,10 +53,6 @@ void compare_from(const Case& in, const Vec3* at, float moved) {
 }
 
 }  // namespace
-
-const formats::AssetView& Case::view() const {
-    return file.asset()->loaded.view;
-}
 
 void compare_surfaces(const Case& in) {
     if (in.file.receivers() == 0) return;

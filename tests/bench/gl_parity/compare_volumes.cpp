@@ -35,9 +35,8 @@ Vec3 point_of(const opaline_volume_info& info, std::mt19937& generator) {
 
 // An offset which added to the eye gives the place that the CPU is asked for: floats round that
 // sum.
-HostRay ray_from(Vec3 place, const float (&eye)[3]) {
-    const Vec3 e{eye[0], eye[1], eye[2]};
-    const Vec3 offset = (e + (place - e)) - e;
+HostRay ray_from(Vec3 place, Vec3 eye) {
+    const Vec3 offset = (eye + (place - eye)) - eye;
     return {{offset.x, offset.y, offset.z}, 0, {0, 0, 1}, 1e30f};
 }
 
@@ -48,16 +47,15 @@ void set_direction(HostRay& ray, Vec3 direction) {
 }
 
 // Toward points of the volumes: from the eye and beside it, some with a begin or an end there.
-std::vector<HostRay> rays_toward(const std::vector<opaline_volume_info>& volumes,
-                                 const float (&eye)[3]) {
+std::vector<HostRay> rays_toward(const std::vector<opaline_volume_info>& volumes, Vec3 eye) {
     std::mt19937 generator(5);
     std::vector<HostRay> rays;
     for (std::size_t i = 0; i < kRays; ++i) {
         const opaline_volume_info& volume = volumes[i % volumes.size()];
-        const Vec3 at{eye[0], eye[1], eye[2]}, to = point_of(volume, generator);
-        const Vec3 beside = at + 0.05f * (point_of(volume, generator) - to);
-        HostRay ray = ray_from(i % 2 == 0 ? at : beside, eye);
-        const Vec3 way = to - (i % 2 == 0 ? at : beside);
+        const Vec3 to = point_of(volume, generator);
+        const Vec3 beside = eye + 0.05f * (point_of(volume, generator) - to);
+        const Vec3 from = i % 2 == 0 ? eye : beside, way = to - from;
+        HostRay ray = ray_from(from, eye);
         const float distance = length(way);
         if (!(distance > 0)) continue;
         set_direction(ray, formats::normalize(way));
@@ -68,8 +66,7 @@ std::vector<HostRay> rays_toward(const std::vector<opaline_volume_info>& volumes
     return rays;
 }
 
-std::vector<HostRay> points_of(const std::vector<opaline_volume_info>& volumes,
-                               const float (&eye)[3]) {
+std::vector<HostRay> points_of(const std::vector<opaline_volume_info>& volumes, Vec3 eye) {
     std::mt19937 generator(3);
     std::uniform_real_distribution<float> value(-1, 1);
     std::vector<HostRay> points;
@@ -103,10 +100,7 @@ template <class Function, class Result>
 void compare_halves(const Case& in, Kind kind, const char* of, const Function& function,
                     const float (Result::*values)[3], const std::vector<HostRay>& rays, Vec3 eye,
                     const std::vector<float>& gl, float scale) {
-    const SeenFrom cpu = [&](Vec3 by) {
-        const float from[3] = {eye.x + by.x, eye.y + by.y, eye.z + by.z};
-        return values_of(function(rays, from), values);
-    };
+    const SeenFrom cpu = [&](Vec3 by) { return values_of(function(rays, eye + by), values); };
     const float far = std::max({std::abs(eye.x), std::abs(eye.y), std::abs(eye.z)});
     compare_values(in.report,
                    {kind, of, 3, {scale > 0 ? scale : largest_of(cpu({}))}, far * 0x1p-22f}, cpu,
@@ -134,30 +128,29 @@ void compare_volumes(const Case& in) {
     test::HostPicture picture = test::make_volume_picture(in.api, objects);
     const Vec3 front = runtime::frame_asset(in.view(), 40, 128, 96).eye;
     std::mt19937 generator(7);
-    const auto march = [&](const std::vector<HostRay>& rays, const float(&eye)[3]) {
+    const auto march = [&](const std::vector<HostRay>& rays, Vec3 eye) {
         return test::march_rays(in.file.asset(), light.get(), rays, eye);
     };
-    const auto sample = [&](const std::vector<HostRay>& points, const float(&eye)[3]) {
+    const auto sample = [&](const std::vector<HostRay>& points, Vec3 eye) {
         return test::sample_points(in.file.asset(), light.get(), points, eye);
     };
     using March = opaline_march_result;
     using Sample = opaline_sample_result;
-    for (const Vec3 at : {front, point_of(volumes.front(), generator)}) {
-        const float eye[3] = {at.x, at.y, at.z};
-        test::require(opaline_gl_look_from(in.gl, eye) == OPALINE_OK, opaline_last_error());
+    for (const Vec3 eye : {front, point_of(volumes.front(), generator)}) {
+        test::require(opaline_gl_look_from(in.gl, &eye.x) == OPALINE_OK, opaline_last_error());
         const std::vector<HostRay> rays = rays_toward(volumes, eye),
                                    points = points_of(volumes, eye);
         picture.set_flag("is_point", false);
         const std::vector<float> seen = picture.draw(rays);
         picture.set_flag("is_point", true);
         const std::vector<float> found = picture.draw(points);
-        compare_halves(in, Kind::rays, "radiance of ray", march, &March::radiance, rays, at,
+        compare_halves(in, Kind::rays, "radiance of ray", march, &March::radiance, rays, eye,
                        half_of(seen, 0), 0);
         compare_halves(in, Kind::rays, "transmittance of ray", march, &March::transmittance, rays,
-                       at, half_of(seen, 4), 1);
+                       eye, half_of(seen, 4), 1);
         compare_halves(in, Kind::points, "extinction of point", sample, &Sample::extinction, points,
-                       at, half_of(found, 0), 0);
-        compare_halves(in, Kind::points, "light of point", sample, &Sample::scattered, points, at,
+                       eye, half_of(found, 0), 0);
+        compare_halves(in, Kind::points, "light of point", sample, &Sample::scattered, points, eye,
                        half_of(found, 4), 0);
     }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "formats/opal/asset.h"
+#include "runtime/api_support.h"
 #include "tests/bench/gl_parity/report.h"
 #include "tests/bench/gl_parity/skies.h"
 #include "tests/runtime/embed_gl/host/host_context.h"
@@ -15,7 +16,7 @@ struct Case {
     opaline_gl* gl;  ///< made with everything that the file has, relit by the file's light
     Report& report;
 
-    const formats::AssetView& view() const;
+    const formats::AssetView& view() const { return file.asset()->loaded.view; }
 };
 
 /// Each throws as test::require where something cannot be done at all.

@@ -20,12 +20,7 @@ constexpr std::uint8_t kAlbedoCode = 180;
 
 // A sky of radiance 0.3 and a sun of irradiance 1 facing it.
 Environment sun_and_sky(double sine, double azimuth = 0) {
-    Environment environment = test::one_sun(sine, azimuth, 0.002f);
-    const Environment sky = test::white_sky(0.3f);
-    environment.width = sky.width;
-    environment.height = sky.height;
-    environment.pixel = sky.pixel;
-    return environment;
+    return test::sunny_day(0.3f, sine, azimuth, 0.002f);
 }
 
 // Flux needs the mean over azimuths alone.

@@ -155,9 +155,7 @@ TEST(EvenLayer, HazeTakesWhatIsFarOffTowardTheHorizon) {
     const auto look = [&made](float haze, double sine, double sky) {
         formats::Clouds clouds = made;
         clouds.records[0].haze = haze;
-        formats::Environment day = test::white_sky(static_cast<float>(sky));
-        day.discs = test::one_sun(0.6).discs;
-        const test::LitLayer lit(std::move(clouds), day);
+        const test::LitLayer lit(std::move(clouds), test::sunny_day(static_cast<float>(sky), 0.6));
         const LayerRay ray{kBelow, test::direction_of(sine, 2)};
         const LayerMarch march = march_layer(lit.light.field, ray, lit.light.rest_kappa[1]);
         return std::tuple(see_layer(lit.light, ray), march.distance, lit.light.sky.horizon.g);

@@ -42,12 +42,6 @@ formats::Clouds half_clouds() {
     return kMade;
 }
 
-formats::Environment high_sun() {
-    formats::Environment sky = test::white_sky(0.2f);
-    sky.discs = test::one_sun(0.95).discs;
-    return sky;
-}
-
 constexpr Vec3 kUnderCloud{-2000, 5, 0}, kUnderHole{2000, 5, 0};
 
 std::vector<Rgb> relight(const Asset& asset, const test::LitLayer& lit, const LightPoints& points) {
@@ -70,7 +64,7 @@ float mean_green(std::span<const Rgb> radiance) {
 }
 
 TEST(LightPoints, BallsUnderACloudAndAHoleAreLitAsInScenesOfTheirOwn) {
-    const test::LitLayer lit(half_clouds(), high_sun());
+    const test::LitLayer lit(half_clouds(), test::sunny_day(0.2f, 0.95));
     const Asset both = balls_at({kUnderCloud, kUnderHole});
     const LightPoints points = light_points(both.view(), {}, lit.light.field, {0, 5, 0});
     ASSERT_EQ(points.point.size(), 2u);
@@ -90,7 +84,7 @@ TEST(LightPoints, BallsUnderACloudAndAHoleAreLitAsInScenesOfTheirOwn) {
 }
 
 TEST(LightPoints, WhatStandsTogetherHasTheGivenPoint) {
-    const test::LitLayer lit(half_clouds(), high_sun());
+    const test::LitLayer lit(half_clouds(), test::sunny_day(0.2f, 0.95));
     const Vec3 centre{1, 2, 3};
     for (const Asset& asset : {balls_at({{0, 5, 0}}), balls_at({{0, 5, 0}, {400, 5, 300}})}) {
         const LightPoints points = light_points(asset.view(), {}, lit.light.field, centre);
@@ -101,13 +95,13 @@ TEST(LightPoints, WhatStandsTogetherHasTheGivenPoint) {
     test::TestLayer even = test::even_test_layer();
     even.flux = {16, 10};
     even.radiance = {0, 0, 0};
-    const test::LitLayer endless(test::make_test_clouds(even), high_sun());
+    const test::LitLayer endless(test::make_test_clouds(even), test::sunny_day(0.2f, 0.95));
     const Asset far_apart = balls_at({kUnderCloud, kUnderHole});
     EXPECT_EQ(light_points(far_apart.view(), {}, endless.light.field, centre).point.size(), 1u);
 }
 
 TEST(LightPoints, ANodeIsNeverDivided) {
-    const test::LitLayer lit(half_clouds(), high_sun());
+    const test::LitLayer lit(half_clouds(), test::sunny_day(0.2f, 0.95));
     Asset asset = balls_at({kUnderCloud, kUnderHole, {4000, 5, 0}});
     asset.primitives[1].node = asset.primitives[0].node;
     const LightPoints points = light_points(asset.view(), {}, lit.light.field, {});
@@ -117,7 +111,7 @@ TEST(LightPoints, ANodeIsNeverDivided) {
 }
 
 TEST(LightPoints, VolumesFarFromBodiesHaveAPointOfTheirOwn) {
-    const test::LitLayer lit(half_clouds(), high_sun());
+    const test::LitLayer lit(half_clouds(), test::sunny_day(0.2f, 0.95));
     const Asset ball = balls_at({kUnderCloud});
     const std::vector<Vec3> corners{{1990, 0, -10}, {2010, 20, 10}};
     const LightPoints points = light_points(ball.view(), corners, lit.light.field, {});
@@ -128,7 +122,7 @@ TEST(LightPoints, VolumesFarFromBodiesHaveAPointOfTheirOwn) {
 }
 
 TEST(LightPoints, AreFewHoweverManyTheNodesAre) {
-    const test::LitLayer lit(half_clouds(), high_sun());
+    const test::LitLayer lit(half_clouds(), test::sunny_day(0.2f, 0.95));
     Asset asset = test::make_asset(kTexels, 16);
     for (int i = 0; i < 100; ++i) {
         const auto x = static_cast<float>(900 * (i % 10)), z = static_cast<float>(900 * (i / 10));
@@ -147,7 +141,7 @@ TEST(LightPoints, AreFewHoweverManyTheNodesAre) {
 
 // What is mirrored is seen from the centre, which takes a map of its own: only where something is.
 TEST(PartEnvironments, AreThoseAtThePointsAndAtTheCentreIfSomethingIsMirrored) {
-    const test::LitLayer lit(half_clouds(), high_sun());
+    const test::LitLayer lit(half_clouds(), test::sunny_day(0.2f, 0.95));
     Asset asset = balls_at({kUnderCloud, kUnderHole});
     const Vec3 centre{0, 5, 0};
     PartEnvironments parts = environments_of_parts(lit.scene(), asset.view(), {}, centre, 1);

@@ -64,6 +64,14 @@ inline formats::Environment one_sun(double sine, double azimuth = 0,
     return environment;
 }
 
+/// Both: an even sky of this radiance, and that sun.
+inline formats::Environment sunny_day(float radiance, double sine, double azimuth = 0,
+                                      float angular_radius = 0.005f) {
+    formats::Environment environment = white_sky(radiance);
+    environment.discs = one_sun(sine, azimuth, angular_radius).discs;
+    return environment;
+}
+
 inline bool is_lit(formats::Rgb color) {
     return std::isfinite(color.r) && std::isfinite(color.g) && std::isfinite(color.b) &&
            color.r >= 0 && color.g >= 0 && color.b >= 0;

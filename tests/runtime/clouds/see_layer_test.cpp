@@ -51,13 +51,6 @@ const test::LitLayer& lit_heaps() {
     return lit;
 }
 
-// A dim even sky and a sun.
-formats::Environment bright_day(double sine) {
-    formats::Environment environment = test::white_sky(0.1f);
-    environment.discs = test::one_sun(sine).discs;
-    return environment;
-}
-
 TEST(SeeLayer, TheMeanSheetIsWhereLightIsTaken) {
     const LayerSheet near{{1, 1, 1}, {0.5f, 0.5f, 0.5f}, 100}, far{{2, 2, 2}, {0, 0, 0}, 400};
     const LayerSheet mean = mean_sheet(std::array{near, far, LayerSheet{}, LayerSheet{}});
@@ -69,7 +62,7 @@ TEST(SeeLayer, TheMeanSheetIsWhereLightIsTaken) {
 
 TEST(SeeLayer, OfNoThicknessIsInvisible) {
     for (const float highest : {0.0f, 100.0f}) {
-        const test::LitLayer lit(nothing(highest), bright_day(0.5));
+        const test::LitLayer lit(nothing(highest), test::sunny_day(0.1f, 0.5));
         for (const double sine : {1.0, 0.5, 0.0, -0.3}) {
             for (const float eye : {0.0f, 1000.0f, 1050.0f, 2000.0f}) {
                 const SeenLayer seen =
@@ -102,7 +95,7 @@ TEST(SeeLayer, EndsWhereTheRayEnds) {
 
 TEST(SeeLayer, FadesAtItsEdgesWithoutAStep) {
     for (const bool repeats : {true, false}) {
-        const test::LitLayer lit(heaps(repeats), bright_day(0.5));
+        const test::LitLayer lit(heaps(repeats), test::sunny_day(0.1f, 0.5));
         for (const float eye : {0.0f, 3000.0f}) {
             const double sine = eye > 0 ? -0.6 : 0.6;
             Rgb before;
@@ -125,7 +118,7 @@ TEST(SeeLayer, IsFiniteForEveryRay) {
     for (const double sun : {1.0, 0.3, 1e-4}) {
         for (const float highest : {300.0f, 1e-3f, 2e4f}) {
             for (const bool repeats : {true, false}) {
-                const test::LitLayer lit(heaps(repeats, highest), bright_day(sun));
+                const test::LitLayer lit(heaps(repeats, highest), test::sunny_day(0.1f, sun));
                 for (const float height :
                      {0.0f, 999.0f, 1000.0f, 1000.0001f, 1150.0f, 1300.0f, 1e6f, -50.0f}) {
                     for (const double sine :
@@ -150,7 +143,7 @@ TEST(SeeLayer, IsFiniteForEveryRay) {
 }
 
 TEST(SeeLayer, IsContinuousWhereTheEyeEntersIt) {
-    const test::LitLayer lit(heaps(true), bright_day(0.5));
+    const test::LitLayer lit(heaps(true), test::sunny_day(0.1f, 0.5));
     const auto look = [&](float height, double sine) {
         return see_through_layer(lit.scene(), {{1000, height, 1200}, test::direction_of(sine, 2)})
             .g;
@@ -163,7 +156,7 @@ TEST(SeeLayer, IsContinuousWhereTheEyeEntersIt) {
 }
 
 TEST(SeeLayer, SurfacesHideTheSkyAndTheGroundHidesThem) {
-    const test::LitLayer lit(heaps(true), bright_day(0.5));
+    const test::LitLayer lit(heaps(true), test::sunny_day(0.1f, 0.5));
     const Rgb red{1, 0, 0};
     LayerRay down{{0, 500, 0}, {0, -1, 0}};
     for (const double end : {400.0, 500.2}) {  // above the ground, and a floor in its plane
@@ -217,7 +210,8 @@ TEST(SeeLayer, SlopesThatFaceTheSunAreBrighterFromAbove) {
 TEST(SeeLayer, WindCarriesItAlong) {
     Clouds clouds = heaps(true);
     clouds.records[0].wind = {8, -3};
-    const test::LitLayer now(clouds, bright_day(0.5)), later(clouds, bright_day(0.5), {.time = 50});
+    const test::LitLayer now(clouds, test::sunny_day(0.1f, 0.5)),
+        later(clouds, test::sunny_day(0.1f, 0.5), {.time = 50});
     const auto through = [](const test::LitLayer& lit, float x, float z) {
         return see_layer(lit.light, {{x, 0, z}, test::direction_of(0.8, 1)}).transmittance.g;
     };

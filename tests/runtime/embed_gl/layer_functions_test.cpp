@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <optional>
-#include <string>
+#include <utility>
 
 #include "runtime/api_support.h"
 #include "runtime/clouds/environment_at.h"
@@ -14,7 +13,7 @@
 #include "runtime/embed_gl/api_gl_support.h"
 #include "runtime/picture/layer_pass.h"
 #include "runtime/picture/software_renderer.h"
-#include "tests/runtime/embed_gl/embedded_asset.h"
+#include "tests/runtime/embed_gl/camera_rays.h"
 #include "tests/runtime/embed_gl/gl_fixture.h"
 #include "tests/runtime/embed_gl/host/host_layer.h"
 #include "tests/support/cloud_layers.h"
@@ -41,10 +40,7 @@ formats::Clouds bumpy_clouds(bool repeats, bool is_bare) {
     formats::Clouds clouds = make_test_clouds(layer, [](std::uint32_t column, std::uint32_t row) {
         return 300 * std::max(0.0, std::sin(column * 0.41) * std::cos(row * 0.37) + 0.25);
     });
-    for (std::size_t i = 0; i < clouds.ground.size(); ++i) {
-        const auto code = static_cast<std::uint8_t>(i % 2 == 0 ? 180 : 90);
-        clouds.ground[i] = {code, 120, static_cast<std::uint8_t>(255 - code), 255};
-    }
+    paint_squares(clouds, 180, 90);
     return clouds;
 }
 
@@ -54,7 +50,9 @@ formats::Asset make_cloudy(bool repeats, bool is_bare) {
     return asset;
 }
 
-const formats::Environment kEvenSky = make_lat_long(16, 8, [](Vec3) { return Rgb{1, 0.8f, 0.5f}; });
+const formats::Environment kEvenSky = tests::lat_long_map(16, 8, [](Vec3) {
+    return Rgb{1, 0.8f, 0.5f};
+});
 constexpr opaline_layer_sun kHostSuns[] = {{{-1, 1.2f, -1}, 0.01f, {4e4f, 3e4f, 1e4f}},
                                            {{0.1f, 0.5f, -1}, 0.02f, {1e3f, 2e3f, 3e3f}}};
 
@@ -80,25 +78,12 @@ constexpr Viewpoint kViewpoints[] = {{"below", {0, 2, 0}, {0, 600, -900}},
                                      {"inside", {300, 1080, 200}, {900, 1100, -300}}};
 
 runtime::Camera camera_at(const Viewpoint& view) {
-    runtime::Camera camera;
-    camera.eye = view.eye;
-    camera.target = view.target;
-    camera.fov_y = 60;
-    camera.width = 24;
-    camera.height = 18;
-    camera.near_plane = 1;
-    return camera;
-}
-
-std::vector<HostRay> camera_rays(const runtime::Camera& camera) {
-    const runtime::CameraFrame frame = runtime::camera_frame(camera);
-    std::vector<HostRay> rays;
-    for (std::uint32_t i = 0; i < camera.width * camera.height; ++i) {
-        const Vec3 d =
-            runtime::view_ray(camera, frame, i % camera.width + 0.5, i / camera.width + 0.5);
-        rays.push_back({{0, 0, 0}, camera.near_plane, {d.x, d.y, d.z}, 1e30f});
-    }
-    return rays;
+    return {.eye = view.eye,
+            .target = view.target,
+            .fov_y = 60,
+            .width = 24,
+            .height = 18,
+            .near_plane = 1};
 }
 
 runtime::LayerRay cpu_ray(Vec3 eye, const HostRay& ray, float spread) {
@@ -112,19 +97,16 @@ runtime::LayerRay cpu_ray(Vec3 eye, const HostRay& ray, float spread) {
 class EmbedGlLayer : public EmbedGl {
   protected:
     void make(const formats::Asset& asset) {
-        host_ = std::make_unique<EmbeddedAsset>(asset);
-        ASSERT_EQ(opaline_gl_create(host_->asset(), load_gl, 0, &gl_), OPALINE_OK)
-            << opaline_last_error();
+        picture_.reset();
+        opaline_layer_light_release(std::exchange(layer_light_, nullptr));
+        EmbedGl::make(asset);
         ASSERT_EQ(opaline_layer_light_create(host_->asset(), &layer_light_), OPALINE_OK);
     }
-    void clear() {
+    void TearDown() override {
         picture_.reset();
         opaline_layer_light_release(layer_light_);
-        EXPECT_EQ(opaline_gl_release(gl_), OPALINE_OK);
-        layer_light_ = nullptr;
-        gl_ = nullptr;
+        EmbedGl::TearDown();
     }
-    void TearDown() override { clear(); }
     void show(const opaline_layer_sky& sky) {
         ASSERT_EQ(opaline_layer_light_update(layer_light_, host_->asset(), &sky, 1), OPALINE_OK)
             << opaline_last_error();
@@ -133,10 +115,6 @@ class EmbedGlLayer : public EmbedGl {
         if (picture_) return;
         picture_.emplace(
             make_layer_picture(GetParam(), filled<opaline_gl_layer>(opaline_gl_get_layer, gl_)));
-    }
-    void look_from(Vec3 eye) const {
-        const float at[3] = {eye.x, eye.y, eye.z};
-        ASSERT_EQ(opaline_gl_look_from(gl_, at), OPALINE_OK) << opaline_last_error();
     }
     // Of what `opaline_layer_see` gives, off the CPU's by at most a share of the brightest.
     void expect_parts(Vec3 eye, const std::vector<HostRay>& rays) {
@@ -171,8 +149,6 @@ class EmbedGlLayer : public EmbedGl {
         // GPUs round the last bit each in their own way.
         EXPECT_LE(largest_distance, 2e-5f);
     }
-    std::unique_ptr<EmbeddedAsset> host_;
-    opaline_gl* gl_ = nullptr;
     opaline_layer_light* layer_light_ = nullptr;
     std::optional<HostPicture> picture_;
 };
@@ -189,7 +165,6 @@ TEST_P(EmbedGlLayer, RaysSeeWhatTheCpuSees) {
             ++suns;
             expect_parts(view.eye, camera_rays(camera_at(view)));
         }
-        clear();
     }
     make(make_cloudy(true, false));
     show(even_sky(1, 0));
@@ -277,32 +252,30 @@ TEST(LayerLight, OfABodyIsWhatItsPointSeesAndDarkerBeneathTheClouds) {
     EXPECT_LT(brightness[2], 0.95f * brightness[3]);
     EXPECT_GT(brightness[1], 1.1f * brightness[3]);
     const float lost[3] = {0, NAN, 0}, point[3] = {0, 0, 0};
-    EXPECT_EQ(opaline_light_set_from_layer(body.light(), clouds.asset(), layer_light, lost),
-              OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_set_from_layer(body.light(), body.asset(), layer_light, point),
-              OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_set_from_layer(nullptr, clouds.asset(), layer_light, point),
-              OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_light_set_from_layer(body.light(), clouds.asset(), layer_light, nullptr),
-              OPALINE_INVALID_ARGUMENT);
+    const auto set = opaline_light_set_from_layer;
+    EXPECT_THAT((Statuses{set(body.light(), clouds.asset(), layer_light, lost),
+                          set(body.light(), body.asset(), layer_light, point),
+                          set(nullptr, clouds.asset(), layer_light, point),
+                          set(body.light(), clouds.asset(), layer_light, nullptr)}),
+                testing::Each(OPALINE_INVALID_ARGUMENT));
     opaline_layer_light_release(layer_light);
 }
 
 TEST_P(EmbedGlLayer, WrongUseIsToldByStatus) {
     make(make_cloudy(true, true));
     opaline_gl_layer layer{};
-    EXPECT_EQ(opaline_gl_get_layer(gl_, &layer), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_gl_get_layer(gl_, nullptr), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_gl_get_layer(nullptr, &layer), OPALINE_INVALID_ARGUMENT);
+    const opaline_asset* const asset = host_->asset();
+    EXPECT_THAT((Statuses{opaline_gl_get_layer(gl_, &layer), opaline_gl_get_layer(gl_, nullptr),
+                          opaline_gl_get_layer(nullptr, &layer),
+                          opaline_gl_show_layer(nullptr, asset, layer_light_),
+                          opaline_gl_show_layer(gl_, nullptr, layer_light_),
+                          opaline_gl_show_layer(gl_, asset, nullptr)}),
+                testing::Each(OPALINE_INVALID_ARGUMENT));
     layer.struct_size = sizeof layer;
     EXPECT_EQ(opaline_gl_get_layer(gl_, &layer), OPALINE_OK);
     EXPECT_EQ(layer.block + layer.modes + layer.table_values, 0u);
-    const opaline_asset* const asset = host_->asset();
     EXPECT_EQ(opaline_asset_layer_count(asset), 1u);
     EXPECT_EQ(opaline_asset_layer_count(nullptr), 0u);
-    EXPECT_EQ(opaline_gl_show_layer(nullptr, asset, layer_light_), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_gl_show_layer(gl_, nullptr, layer_light_), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_gl_show_layer(gl_, asset, nullptr), OPALINE_INVALID_ARGUMENT);
     // Before the first update the layer is black, and can be shown.
     EXPECT_EQ(opaline_gl_show_layer(gl_, asset, layer_light_), OPALINE_OK) << opaline_last_error();
     const auto refused = [&](auto change) {
@@ -328,31 +301,29 @@ TEST_P(EmbedGlLayer, WrongUseIsToldByStatus) {
     std::copy(black, black + 3, sun.direction);
     EXPECT_TRUE(refused([&](Sky& sky) { sky.suns = &sun, sky.sun_count = 1; }));
     const opaline_layer_sky sky = even_sky(0, 0);
-    EXPECT_EQ(opaline_layer_light_update(nullptr, asset, &sky, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_layer_light_update(layer_light_, nullptr, &sky, 1), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_layer_light_update(layer_light_, asset, nullptr, 1),
-              OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_layer_light_update(layer_light_, asset, &sky, 257), OPALINE_INVALID_ARGUMENT);
     // Another asset's; and one without a layer.
     const EmbeddedAsset other(make_cloudy(true, true)), clear_sky(make_asset(8, 8));
-    EXPECT_EQ(opaline_layer_light_update(layer_light_, other.asset(), &sky, 1),
-              OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_gl_show_layer(gl_, other.asset(), layer_light_), OPALINE_INVALID_ARGUMENT);
-    opaline_layer_light* none = nullptr;
-    EXPECT_EQ(opaline_layer_light_create(clear_sky.asset(), &none), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_layer_light_create(nullptr, &none), OPALINE_INVALID_ARGUMENT);
-    EXPECT_EQ(opaline_layer_light_create(asset, nullptr), OPALINE_INVALID_ARGUMENT);
-    ASSERT_EQ(opaline_layer_light_create(other.asset(), &none), OPALINE_OK);
-    EXPECT_EQ(opaline_gl_show_layer(gl_, other.asset(), none), OPALINE_INVALID_ARGUMENT);
-    opaline_layer_light_release(none);
+    opaline_layer_light *none = nullptr, *others = nullptr;
+    ASSERT_EQ(opaline_layer_light_create(other.asset(), &others), OPALINE_OK);
+    const auto update = opaline_layer_light_update;
+    EXPECT_THAT(
+        (Statuses{update(nullptr, asset, &sky, 1), update(layer_light_, nullptr, &sky, 1),
+                  update(layer_light_, asset, nullptr, 1), update(layer_light_, asset, &sky, 257),
+                  update(layer_light_, other.asset(), &sky, 1),
+                  opaline_gl_show_layer(gl_, other.asset(), layer_light_),
+                  opaline_gl_show_layer(gl_, other.asset(), others),
+                  opaline_layer_light_create(clear_sky.asset(), &none),
+                  opaline_layer_light_create(nullptr, &none),
+                  opaline_layer_light_create(asset, nullptr)}),
+        testing::Each(OPALINE_INVALID_ARGUMENT));
+    opaline_layer_light_release(others);
     opaline_layer_light_release(nullptr);
     HostContext::make_none_current();
     EXPECT_EQ(opaline_gl_show_layer(gl_, asset, layer_light_), OPALINE_GL_NO_CONTEXT);
     context_->make_current();
 }
 
-INSTANTIATE_TEST_SUITE_P(On, EmbedGlLayer, testing::Values(HostApi::desktop_43, HostApi::es_31),
-                         api_name);
+INSTANTIATE_TEST_SUITE_P(On, EmbedGlLayer, kBothContexts, api_name);
 
 }  // namespace
 }  // namespace opaline::test

@@ -6,16 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "tests/runtime/embed_gl/embedded_asset.h"
 #include "tests/runtime/embed_gl/gl_fixture.h"
 #include "tests/runtime/embed_gl/host/host_volumes.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
-#include "tests/support/cut_phase.h"
 
 namespace opaline::test {
 
@@ -33,11 +30,7 @@ inline TestVolume puff(float x, std::uint32_t terms, float forward) {
     volume.moment = {1, 0.6f, 0.3f, 0.2f, 0.1f};
     volume.sigma_t = {1, 2, 4};
     volume.albedo = {0.9f, 0.8f, 0.7f};
-    if (forward > 0) {
-        const tests::CutPhase phase = tests::make_cut_phase(static_cast<double>(forward));
-        volume.moment = phase.moments();
-        volume.phase = phase;
-    }
+    if (forward > 0) scatter_forward(volume, static_cast<double>(forward));
     volume.density = [](float i, float j, float k) {
         const float r2 = i * i + (j - 12) * (j - 12) + (k - 24) * (k - 24);
         return std::min(1.0f, std::max(0.0f, 1.8f - 1.8f * r2 / 60));
@@ -58,15 +51,13 @@ inline TestVolume puff(float x, std::uint32_t terms, float forward) {
 class EmbedGlVolumes : public EmbedGl {
   protected:
     void make(const formats::Asset& asset) {
-        host_ = std::make_unique<EmbeddedAsset>(asset);
-        ASSERT_EQ(opaline_gl_create(host_->asset(), load_gl, OPALINE_GL_WITH_VOLUMES, &gl_),
-                  OPALINE_OK)
-            << opaline_last_error();
+        opaline_volume_light_release(volume_light_);
+        EmbedGl::make(asset, OPALINE_GL_WITH_VOLUMES);
         ASSERT_EQ(opaline_volume_light_create(host_->asset(), &volume_light_), OPALINE_OK);
     }
     void TearDown() override {
         opaline_volume_light_release(volume_light_);
-        EXPECT_EQ(opaline_gl_release(gl_), OPALINE_OK);
+        EmbedGl::TearDown();
     }
     void light(std::uint32_t flags = 0) {
         ASSERT_EQ(
@@ -83,13 +74,34 @@ class EmbedGlVolumes : public EmbedGl {
     HostPicture picture() const { return make_volume_picture(GetParam(), objects()); }
     // What the CPU sees of rays from the eye.
     std::vector<opaline_march_result> march(const std::vector<HostRay>& rays,
-                                            const float (&eye)[3]) const {
+                                            formats::Vec3 eye) const {
         return march_rays(host_->asset(), volume_light_, rays, eye);
     }
-    std::unique_ptr<EmbeddedAsset> host_;
-    opaline_gl* gl_ = nullptr;
     opaline_volume_light* volume_light_ = nullptr;
 };
+
+/// The largest of three values of each result.
+template <class Result>
+float largest_of(const std::vector<Result>& cpu, const float (Result::*values)[3]) {
+    float largest = 0;
+    for (const Result& result : cpu) {
+        largest =
+            std::max({largest, (result.*values)[0], (result.*values)[1], (result.*values)[2]});
+    }
+    return largest;
+}
+
+/// Three of the eight floats drawn of each ray, from `first` on, are the CPU's.
+template <class Result>
+void expect_drawn(const std::vector<float>& drawn, std::size_t first,
+                  const std::vector<Result>& cpu, const float (Result::*values)[3],
+                  float tolerance) {
+    for (std::size_t i = 0; i < cpu.size(); ++i) {
+        for (std::size_t b = 0; b < 3; ++b) {
+            EXPECT_NEAR(drawn[8 * i + first + b], (cpu[i].*values)[b], tolerance) << i;
+        }
+    }
+}
 
 // Some begin inside, some end there, some miss.
 inline std::vector<HostRay> scattered_rays(std::size_t count) {

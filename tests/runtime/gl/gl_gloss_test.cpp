@@ -2,9 +2,6 @@
 
 #include <cmath>
 
-#include "runtime/gl/gl_renderer.h"
-#include "runtime/picture/software_renderer.h"
-#include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
@@ -13,9 +10,7 @@ namespace {
 
 using formats::Asset;
 using formats::GlossRecord;
-using formats::Rgb;
 using formats::TermSet;
-using test::text_of;
 
 class GlGloss : public test::Gl {};
 
@@ -64,35 +59,16 @@ Asset make_scene() {
 
 TEST_F(GlGloss, PicturesAgreeWithTheCpuInEveryComponent) {
     const Asset asset = make_scene();
-    const formats::AssetView view = asset.view();
-    formats::Environment sky = test::make_lat_long(128, 64, test::two_lights);
+    formats::Environment sky = tests::lat_long_map(128, 64, test::two_lights);
     sky.discs = {{normalize(formats::Vec3{0.3f, 0.8f, 0.5f}), 0.0046f, {8000, 7000, 6000}}};
-    const Rotation rotation = rotation_about_y(0.7f);
-    const LightVector light = project_environment(sky, 16, rotation);
-    const SpecularLight specular = make_specular_light(sky, specular_needs(view), rotation, 0);
-    auto renderer = GlRenderer::create(view, sky);
-    ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
-    ASSERT_TRUE(renderer->set_light(light, rotation));
-    Camera camera = frame_asset(view, 45, 160, 120);
+    test::BothRenderers both(asset, sky, rotation_about_y(0.7f));
+    Camera camera = frame_asset(asset.view(), 45, 160, 120);
     camera.fov_y = 20;  // the bodies, not the floor around them
     for (const float degrees : {0.0f, 170.0f}) {
-        const Camera at = orbit(camera, degrees);
         for (const TermSet terms : {TermSet::all, TermSet::specular, TermSet::diffuse}) {
             SCOPED_TRACE(testing::Message() << formats::term_names(terms) << ' ' << degrees);
-            const bool background = terms == TermSet::all;
-            const bool mirrors = has_any(terms, TermSet::specular);
-            GlRenderOptions gl_options;
-            gl_options.terms = terms;
-            gl_options.background = background;
-            SoftwareOptions options;
-            options.specular = mirrors ? &specular : nullptr;
-            options.background = background;
-            const auto radiance = shade_for_picture(view, light, at.eye, terms, 0);
-            const auto cpu = render_software(view, radiance, sky, rotation, at, options);
-            const auto gl = renderer->render(at, gl_options);
-            ASSERT_TRUE(cpu.has_value());
-            ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-            test::expect_same_picture(*cpu, *gl);
+            both.expect_agreement(orbit(camera, degrees),
+                                  {.terms = terms, .background = terms == TermSet::all});
         }
     }
 }

@@ -1,9 +1,6 @@
 // Surfaces that light passes in places: the same picture as on the CPU.
 #include <gtest/gtest.h>
 
-#include "runtime/gl/gl_renderer.h"
-#include "runtime/picture/software_renderer.h"
-#include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
@@ -39,29 +36,15 @@ Asset asset_with_holes(bool has_vertex_alpha) {
     return asset;
 }
 
-TEST_F(Gl, HolesAgreeWithTheCpuInTilesToo) {
-    const formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
-    const LightVector light = project_environment(sky, 8);
-    Camera camera;
-    camera.eye = {0.5f, 2, 5};
-    camera.target = {0, 0.8f, 0};
-    camera.width = 160;
-    camera.height = 120;
-    Picture pictures[2];
+TEST_F(Gl, HolesAgreeWithTheCpu) {
+    const formats::Environment sky = tests::lat_long_map(64, 32, test::two_lights);
+    const Camera camera{.eye = {0.5f, 2, 5}, .target = {0, 0.8f, 0}, .width = 160, .height = 120};
+    std::vector<Picture> pictures;
     for (const bool has_vertex_alpha : {false, true}) {
         const Asset asset = asset_with_holes(has_vertex_alpha);
-        auto renderer = GlRenderer::create(asset.view(), sky);
-        ASSERT_TRUE(renderer) << test::text_of(renderer.error());
-        ASSERT_TRUE(renderer->set_light(light, {}));
-        const auto gl = renderer->render(camera);
-        ASSERT_TRUE(gl);
-        const auto cpu = render_software(
-            asset.view(),
-            shade_for_picture(asset.view(), light, camera.eye, formats::TermSet::all, 0, {}), sky,
-            {}, camera);
-        ASSERT_TRUE(cpu);
-        test::expect_same_picture(*cpu, *gl);
-        pictures[has_vertex_alpha ? 1 : 0] = *cpu;
+        test::BothRenderers both(asset, sky);
+        both.expect_agreement(camera);
+        pictures.push_back(both.on_cpu(camera));
     }
     EXPECT_NE(pictures[0].pixel, pictures[1].pixel);
 }

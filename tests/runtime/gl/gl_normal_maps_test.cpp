@@ -3,9 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "formats/opal/sheet_shares.h"
-#include "runtime/gl/gl_renderer.h"
-#include "runtime/picture/software_renderer.h"
-#include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
@@ -67,38 +64,16 @@ Asset asset_with_normal_maps(bool is_glossy) {
 }
 
 TEST_F(Gl, NormalMapsAgreeWithTheCpu) {
-    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    formats::Environment sky = tests::lat_long_map(64, 32, test::two_lights);
     sky.discs.push_back({normalize(formats::Vec3{0.5f, 1, 0.4f}), 0.01f, {6000, 5000, 4000}});
-    const Rotation rotation = rotation_about_y(0.7f);
-    Camera camera;
-    camera.eye = {0.5f, 2, 5};
-    camera.target = {0, 0.6f, 0};
-    camera.width = 96;
-    camera.height = 72;
+    const Camera camera{.eye = {0.5f, 2, 5}, .target = {0, 0.6f, 0}, .width = 96, .height = 72};
     for (const bool is_glossy : {false, true}) {
         Asset asset = asset_with_normal_maps(is_glossy);
-        const LightVector light = project_environment(sky, 16, rotation);
-        auto renderer = GlRenderer::create(asset.view(), sky);
-        ASSERT_TRUE(renderer) << test::text_of(renderer.error());
-        ASSERT_TRUE(renderer->set_light(light, rotation));
-        const auto gl = renderer->render(camera);
-        ASSERT_TRUE(gl);
-        const SpecularLight specular =
-            make_specular_light(sky, specular_needs(asset.view()), rotation, 0);
-        SoftwareOptions options;
-        options.lights = light;
-        if (is_glossy) options.specular = &specular;
-        const auto draw = [&] {
-            return render_software(
-                asset.view(),
-                shade_for_picture(asset.view(), light, camera.eye, formats::TermSet::all, 0, {}),
-                sky, rotation, camera, options);
-        };
-        const auto cpu = draw();
-        ASSERT_TRUE(cpu);
-        test::expect_same_picture(*cpu, *gl);
+        test::BothRenderers both(asset, sky, rotation_about_y(0.7f));
+        both.expect_agreement(camera);
+        const Picture mapped = both.on_cpu(camera);
         asset.normal_maps = {};
-        EXPECT_NE(cpu->pixel, draw()->pixel);
+        EXPECT_NE(mapped.pixel, both.on_cpu(camera).pixel);
     }
 }
 

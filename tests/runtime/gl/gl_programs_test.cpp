@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -37,16 +38,6 @@ class GlPrograms : public test::Gl {
         return std::move(*made);
     }
 
-    static GlAsset upload(const formats::Asset& asset) {
-        auto uploaded = upload_asset(asset.view(), relight(asset).relight().radiance());
-        EXPECT_TRUE(uploaded) << text_of(uploaded.error());
-        return std::move(*uploaded);
-    }
-
-    static Names active(const GlProgram& program, GLenum kind) {
-        return active(program.name(), kind);
-    }
-
     static Names active(GLuint program, GLenum kind) {
         Names names;
         GLint count = 0;
@@ -55,22 +46,42 @@ class GlPrograms : public test::Gl {
             char name[64] = {};
             glGetProgramResourceName(program, kind, static_cast<GLuint>(i), sizeof name, nullptr,
                                      name);
-            if (std::string(name).rfind("gl_", 0) != 0) {
-                names.insert(name);
-            }
+            if (std::string(name).rfind("gl_", 0) != 0) names.insert(name);
         }
         return names;
     }
 
-    static std::size_t made(const auto& programs) {
-        return static_cast<std::size_t>(
-            std::ranges::count_if(programs, [](const GlProgram& p) { return p.name() != 0; }));
+    static std::ptrdiff_t dots(const GlRelight& relight) {
+        return std::ranges::count_if(relight.relight().dot_programs(),
+                                     [](GLuint program) { return program != 0; });
     }
 
-    static std::size_t dots(const GlRelight& relight) {
-        const auto& programs = relight.relight().dot_programs();
-        return static_cast<std::size_t>(
-            std::ranges::count_if(programs, [](GLuint program) { return program != 0; }));
+    // Of so many kinds of sums; `more`: the numbers of surfaces' programs, and the uniforms that
+    // they have beside those of plain ones.
+    static void expect_surfaces(const formats::Asset& scene, std::size_t sums,
+                                const std::map<std::size_t, Names>& more) {
+        const GlRelight relit = relight(scene);
+        EXPECT_EQ(relit.relight().sums().size(), sums);
+        EXPECT_EQ(relit.relight().needs_eye(), sums > 0);
+        const auto asset = upload_asset(scene.view(), relit.relight().radiance());
+        ASSERT_TRUE(asset) << text_of(asset.error());
+        const auto draws = make_draw_programs(*asset, {});
+        ASSERT_TRUE(draws) << text_of(draws.error());
+        for (std::size_t i = 0; i < draws->surfaces.program.size(); ++i) {
+            const GLuint program = draws->surfaces.program[i].name();
+            ASSERT_EQ(program != 0, more.contains(i)) << i;
+            if (program == 0) continue;
+            Names uniforms{"eye",  "right",      "down", "forward",
+                           "unit", "near_plane", "tile", "shown"};
+            uniforms.insert(more.at(i).begin(), more.at(i).end());
+            EXPECT_EQ(active(program, GL_UNIFORM), uniforms);
+            if (i > 0) continue;
+            EXPECT_EQ(active(program, GL_PROGRAM_INPUT),
+                      (Names{"position", "radiance", "base_color"}));
+        }
+        if (scene.gloss.empty() && scene.primitives[0].eta == 0) {
+            EXPECT_EQ(asset->normal.name() + asset->openness.name(), 0u);
+        }
     }
 
   private:
@@ -84,43 +95,34 @@ formats::Asset make_sheet_of(const test::TestPrimitive& look) {
     return asset;
 }
 
-const Names kPlainUniforms{"eye",  "right",      "down", "forward",
-                           "unit", "near_plane", "tile", "shown"};
-
-TEST_F(GlPrograms, OpaqueSurfacesHaveNoCodeForMedia) {
-    const GlAsset asset = upload(make_sheet_of({}));
-    const GlRelight relit = relight(make_sheet_of({}));
-    EXPECT_FALSE(relit.relight().needs_eye());
-    EXPECT_EQ(asset.normal.name(), 0u);
-    EXPECT_EQ(asset.openness.name(), 0u);
-    EXPECT_TRUE(relit.relight().sums().empty());
-    EXPECT_EQ(dots(relit), 1u);
-    const auto draws = make_draw_programs(asset, {});
-    ASSERT_EQ(made(draws->surfaces.program), 1u);
-    EXPECT_EQ(active(draws->surfaces.program[0], GL_UNIFORM), kPlainUniforms);
-    EXPECT_EQ(active(draws->surfaces.program[0], GL_PROGRAM_INPUT),
-              (Names{"position", "radiance", "base_color"}));
-}
-
-TEST_F(GlPrograms, MediaWithOneTermHaveNoViewMaps) {
-    const GlAsset asset = upload(make_sheet_of({.bands = 3, .eta = 1.3f}));
-    const GlRelight relit = relight(make_sheet_of({.bands = 3, .eta = 1.3f}));
-    EXPECT_FALSE(relit.relight().needs_eye());
-    EXPECT_TRUE(relit.relight().sums().empty());
-    const auto draws = make_draw_programs(asset, {});
-    ASSERT_EQ(made(draws->surfaces.program), 1u);
-    Names uniforms = kPlainUniforms;
-    uniforms.insert({"eta", "is_double_sided"});
-    EXPECT_EQ(active(draws->surfaces.program[2], GL_UNIFORM), uniforms) << "nothing is mirrored";
+TEST_F(GlPrograms, SurfacesHaveCodeForWhatTheyAreAlone) {
+    expect_surfaces(make_sheet_of({}), 0, {{0, {}}});
+    // Media of one term: nothing is mirrored.
+    expect_surfaces(make_sheet_of({.bands = 3, .eta = 1.3f}), 0, {{2, {"eta", "is_double_sided"}}});
+    formats::Asset textured = make_sheet_of({.image = 0});
+    textured.images.push_back(test::make_noise_image(3, 3));
+    expect_surfaces(textured, 0, {{1, {"base_color_image", "wrap"}}});
+    // A matt one and a glossy one.
+    formats::Asset glossy = make_sheet_of({});
+    test::add_primitive(glossy, test::make_sheet({0, 0, 0}, {6, 0, 0}, {0, 0, -6}, 3, 1), {});
+    glossy.roughness.assign(2, formats::kNotGlossy);
+    glossy.openness.resize(glossy.position.size());
+    glossy.gloss.resize(2);
+    glossy.gloss[1].roughness = 0.4f;
+    expect_surfaces(glossy, 0,
+                    {{0, {}},
+                     {8,
+                      {"is_double_sided", "light_from_world", "has_specular", "f0_f90",
+                       "metallic_roughness", "suns", "light_maps"}}});
 }
 
 TEST_F(GlPrograms, GreyMediaHaveNoCodeForThreeBands) {
     for (const std::uint32_t terms : {1u, 4u}) {
         const GlRelight grey = relight(make_sheet_of({.bands = 1, .eta = 1.3f, .terms = terms}));
         const GlRelight colour = relight(make_sheet_of({.bands = 3, .eta = 1.3f, .terms = terms}));
-        EXPECT_EQ(dots(grey), 1u);
+        EXPECT_EQ(dots(grey), 1);
         EXPECT_NE(grey.relight().dot_programs()[2], 0u);
-        EXPECT_EQ(dots(colour), 1u);
+        EXPECT_EQ(dots(colour), 1);
         EXPECT_NE(colour.relight().dot_programs()[3], 0u);
     }
 }
@@ -138,34 +140,7 @@ TEST_F(GlPrograms, EachNumberOfTermsHasItsOwnSum) {
     // Two rows that look alike from everywhere.
     EXPECT_EQ(active(sums[1].program, GL_UNIFORM),
               (Names{"vertices", "product_origin", "radiance_origin", "shows"}));
-    EXPECT_EQ(dots(relit), 2u);
-}
-
-TEST_F(GlPrograms, GlossHasAProgramOfItsOwnAndMattSurfacesNothingOfIt) {
-    formats::Asset scene = make_sheet_of({});
-    const auto sheet = test::make_sheet({0, 0, 0}, {6, 0, 0}, {0, 0, -6}, 3, 1);
-    test::add_primitive(scene, sheet, {});
-    scene.roughness.assign(2, formats::kNotGlossy);
-    scene.openness.resize(scene.position.size());
-    scene.gloss.resize(2);
-    scene.gloss[1].roughness = 0.4f;
-    const auto draws = make_draw_programs(upload(scene), {});
-    ASSERT_EQ(made(draws->surfaces.program), 2u);
-    EXPECT_EQ(active(draws->surfaces.program[0], GL_UNIFORM), kPlainUniforms);
-    Names uniforms = kPlainUniforms;
-    uniforms.insert({"is_double_sided", "light_from_world", "has_specular", "f0_f90",
-                     "metallic_roughness", "suns", "light_maps"});
-    EXPECT_EQ(active(draws->surfaces.program[8], GL_UNIFORM), uniforms);
-}
-
-TEST_F(GlPrograms, ImagesAreReadOnlyWhereThereAreImages) {
-    formats::Asset scene = make_sheet_of({.image = 0});
-    scene.images.push_back(test::make_noise_image(3, 3));
-    const auto draws = make_draw_programs(upload(scene), {});
-    ASSERT_EQ(made(draws->surfaces.program), 1u);
-    Names uniforms = kPlainUniforms;
-    uniforms.insert({"base_color_image", "wrap"});
-    EXPECT_EQ(active(draws->surfaces.program[1], GL_UNIFORM), uniforms);
+    EXPECT_EQ(dots(relit), 2);
 }
 
 }  // namespace

@@ -7,22 +7,19 @@
 #include <limits>
 #include <numbers>
 
-#include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
+#include "tests/runtime/picture/every_surface.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::runtime {
 namespace {
 
 using formats::Asset;
-using formats::AssetView;
 using formats::Environment;
 using formats::Rgb;
-using test::expect_same_picture;
-using test::expect_same_radiance;
+using test::BothRenderers;
 using test::Gl;
-using test::text_of;
 
 struct Variant {
     std::uint32_t n, code_bits, bands, details;
@@ -53,97 +50,80 @@ Asset make_scene(const Variant& variant) {
     return asset;
 }
 
-std::vector<Rgb> radiance_on_cpu(const AssetView& asset, const LightVector& light) {
-    std::vector<Rgb> radiance(asset.receivers());
-    ShadeOptions options;
-    options.base_color = false;
-    shade(asset, light, radiance, options);
-    return radiance;
-}
-
 TEST_F(Gl, DotProductsAndPicturesAgreeWithTheCpuForEveryKindOfRow) {
-    const Environment sky = test::make_lat_long(128, 64, test::two_lights);
-    const Rotation rotation = rotation_about_y(0.7f);
+    const Environment sky = tests::lat_long_map(128, 64, test::two_lights);
     for (const Variant& variant :
          {Variant{16, 8, 1, 100}, Variant{16, 8, 3, 60}, Variant{16, 16, 1, 200},
           Variant{8, 16, 3, 33}, Variant{128, 8, 3, 150}, Variant{128, 16, 1, 150}}) {
         SCOPED_TRACE(testing::Message() << "n " << variant.n << ", " << variant.code_bits
                                         << " bits, " << variant.bands << " bands");
         const Asset asset = make_scene(variant);
-        const AssetView view = asset.view();
-        const LightVector light = project_environment(sky, variant.n, rotation);
-        const std::vector<Rgb> radiance = radiance_on_cpu(view, light);
+        BothRenderers(asset, sky, rotation_about_y(0.7f))
+            .expect_agreement(frame_asset(asset.view(), 45, 240, 180));
+    }
+}
 
-        auto renderer = GlRenderer::create(view, sky);
-        ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
-        ASSERT_TRUE(renderer->set_light(light, rotation));
-        const auto on_gl = renderer->read_radiance();
-        ASSERT_TRUE(on_gl.has_value());
-        expect_same_radiance(radiance, *on_gl);
-
-        const Camera camera = frame_asset(view, 45, 240, 180);
-        const auto cpu = render_software(view, radiance, sky, rotation, camera);
-        const auto gl = renderer->render(camera);
-        ASSERT_TRUE(cpu.has_value());
-        ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-        expect_same_picture(*cpu, *gl);
+TEST_F(Gl, EverySurfaceAgreesWithItsEmittersLitDimmedAndSwitchedOff) {
+    const Asset asset = test::make_every_surface();
+    BothRenderers both(asset, tests::lat_long_map(64, 32, test::two_lights));
+    const std::vector<Rgb> dimmed{{2, 1, 0.5f}, {0, 0, 0}};
+    for (const EmitterLight& emitters : {EmitterLight{}, EmitterLight{dimmed, true},
+                                         EmitterLight{dimmed, false}, dark_emitters()}) {
+        both.set_emitters(emitters);
+        both.expect_agreement(
+            {.eye = {0.5f, 2, 7}, .target = {0, 0.7f, 0}, .fov_y = 32, .width = 120, .height = 90});
     }
 }
 
 TEST_F(Gl, ResultDoesNotDependOnLanesBlocksOrTiles) {
-    const Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    const Environment sky = tests::lat_long_map(64, 32, test::two_lights);
     const Asset asset = make_scene({16, 8, 3, 77});
-    const AssetView view = asset.view();
-    const LightVector light = project_environment(sky, 16);
-    const std::vector<Rgb> radiance = radiance_on_cpu(view, light);
-    const Camera camera = frame_asset(view, 45, 101, 67);
+    const Camera camera = frame_asset(asset.view(), 45, 101, 67);
     Picture first;
     for (const GlOptions& options : {GlOptions{1, 0}, GlOptions{4, 0}, GlOptions{16, 0},
                                      GlOptions{32, 0}, GlOptions{1, 4096}, GlOptions{16, 8192}}) {
         SCOPED_TRACE(testing::Message()
                      << options.lanes_per_row << " lanes, " << options.max_block_bytes << " bytes");
-        auto renderer = GlRenderer::create(view, sky, options);
-        ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
-        EXPECT_EQ(renderer->stats().lanes_per_row, options.lanes_per_row);
-        EXPECT_EQ(renderer->stats().dispatches > view.primitives.size(),
+        BothRenderers both(asset, sky, {}, options);
+        EXPECT_EQ(both.renderer.stats().lanes_per_row, options.lanes_per_row);
+        EXPECT_EQ(both.renderer.stats().dispatches > asset.primitives.size(),
                   options.max_block_bytes != 0);
-        ASSERT_TRUE(renderer->set_light(light, {}));
-        const auto on_gl = renderer->read_radiance();
-        ASSERT_TRUE(on_gl.has_value());
-        expect_same_radiance(radiance, *on_gl);
+        both.expect_agreement(camera);
         for (const std::uint32_t tile : {2048u, 96u, 1u}) {
             if (tile == 1 && !first.pixel.empty()) continue;  // a pixel at a time: once is enough
-            const auto picture = renderer->render(camera, {3, tile});
-            ASSERT_TRUE(picture.has_value()) << text_of(picture.error());
-            if (first.pixel.empty()) first = *picture;
-            expect_same_picture(first, *picture);
+            const Picture picture = both.on_gl(camera, {3, tile});
+            if (first.pixel.empty()) first = picture;
+            test::expect_same_picture(first, picture);
         }
     }
 }
 
 TEST_F(Gl, PrimitivesHaveLightsOfTheirOwn) {
-    const Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    const Environment sky = tests::lat_long_map(64, 32, test::two_lights);
     const Asset asset = make_scene({16, 8, 3, 77});
-    const AssetView view = asset.view();
     const std::vector<LightVector> light{project_environment(sky, 16),
                                          project_environment(sky, 16, rotation_about_y(2))};
     const std::vector<std::uint32_t> of_primitive{1, 0, 1, 1, 0};
-    std::vector<Rgb> radiance(asset.position.size());
-    shade(view, {light, of_primitive, 0}, radiance, {.base_color = false});
-    EXPECT_NE(radiance, radiance_on_cpu(view, light[0]));
-    auto renderer = GlRenderer::create(view, sky);
-    ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
-    ASSERT_TRUE(renderer->set_light({light, of_primitive, 0}, {}));
-    const auto on_gl = renderer->read_radiance();
-    ASSERT_TRUE(on_gl.has_value());
-    expect_same_radiance(radiance, *on_gl);
-    EXPECT_FALSE(renderer->set_light({light, std::span(of_primitive).first(4), 0}, {}));
-    EXPECT_FALSE(renderer->set_light({std::span(light).first(1), of_primitive, 0}, {}));
-    EXPECT_FALSE(renderer->set_light({light, of_primitive, 2}, {}));
+    const PartLights lights{light, of_primitive, 0};
+    const auto shaded = [&](const PartLights& by) {
+        return shade_for_picture(asset.view(), by, {}, formats::TermSet::all, 0);
+    };
+    const std::vector<Rgb> radiance = shaded(lights);
+    EXPECT_NE(radiance, shaded(light[0]));
+    BothRenderers both(asset, sky);
+    ASSERT_TRUE(both.renderer.set_light(lights, {}));
+    const auto on_gl = both.renderer.read_radiance();
+    ASSERT_TRUE(on_gl && on_gl->size() == radiance.size());
+    for (std::size_t v = 0; v < radiance.size(); ++v) {
+        EXPECT_NEAR(radiance[v].g, (*on_gl)[v].g, 2e-5f * (std::abs(radiance[v].g) + 1)) << v;
+    }
+    EXPECT_FALSE(both.renderer.set_light({light, std::span(of_primitive).first(4), 0}, {}));
+    EXPECT_FALSE(both.renderer.set_light({std::span(light).first(1), of_primitive, 0}, {}));
+    EXPECT_FALSE(both.renderer.set_light({light, of_primitive, 2}, {}));
 }
 
 TEST_F(Gl, BackgroundAgreesForEveryLayoutAndRotation) {
-    Environment poles = test::make_lat_long(64, 33, test::two_lights);
+    Environment poles = tests::lat_long_map(64, 33, test::two_lights);
     poles.rows_include_poles = true;
     poles.u_offset = 0.1f;
     poles.u_sign = -1;
@@ -152,105 +132,67 @@ TEST_F(Gl, BackgroundAgreesForEveryLayoutAndRotation) {
     discs_alone.discs = {{{0, 0, -1}, 0.2f, {1, 2, 3}},
                          {normalize(formats::Vec3{0.1f, 0, -1}), 0.2f, {3, 2, 1}}};
     const Rotation tilted{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}};
-    for (const Environment& sky : {poles, discs_alone, test::make_cube(16, test::two_lights)}) {
-        auto renderer = GlRenderer::create(Asset{}.view(), sky);
-        ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
+    const Asset nothing;
+    for (const Environment& sky : {poles, discs_alone, tests::cube_map(16, test::two_lights)}) {
         for (const Rotation& rotation : {Rotation{}, rotation_about_y(2.0f), tilted}) {
-            LightVector nothing;
-            ASSERT_TRUE(renderer->set_light(nothing, rotation));
+            BothRenderers both(nothing, sky, rotation);
             for (const formats::Vec3 target :
                  {formats::Vec3{0, 0, -1}, formats::Vec3{-1, 1, 1}, formats::Vec3{0, -1, 0.1f}}) {
-                Camera camera;
-                camera.eye = {0, 0, 0};
-                camera.target = target;
-                camera.fov_y = 100;
-                camera.width = 160;
-                camera.height = 120;
-                const auto cpu = render_software(Asset{}.view(), {}, sky, rotation, camera);
-                const auto gl = renderer->render(camera);
-                ASSERT_TRUE(cpu && gl);
-                if (std::ranges::none_of(cpu->pixel, [](Rgb c) { return luminance(c) > 0; })) {
-                    continue;
+                const Camera camera{
+                    .eye = {0, 0, 0}, .target = target, .fov_y = 100, .width = 160, .height = 120};
+                if (std::ranges::any_of(both.on_cpu(camera).pixel,
+                                        [](Rgb c) { return luminance(c) > 0; })) {
+                    both.expect_agreement(camera);
                 }
-                expect_same_picture(*cpu, *gl);
             }
         }
     }
 }
 
 TEST_F(Gl, CameraInsideTheMeshAgrees) {
-    const Environment sky = test::make_lat_long(64, 32, test::two_lights);
     const Asset asset = make_scene({16, 8, 1, 50});
-    const LightVector light = project_environment(sky, 16);
-    auto renderer = GlRenderer::create(asset.view(), sky);
-    ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
-    ASSERT_TRUE(renderer->set_light(light, {}));
-    Camera camera;
-    camera.eye = {0.2f, 0.9f, 0.3f};
-    camera.target = {-3, 0.2f, -2};
-    camera.width = 150;
-    camera.height = 110;
-    camera.fov_y = 90;
+    BothRenderers both(asset, tests::lat_long_map(64, 32, test::two_lights));
     for (const float near_plane : {1e-3f, 1.0f}) {  // in front of the wall and cutting through it
-        camera.near_plane = near_plane;
-        const auto cpu =
-            render_software(asset.view(), radiance_on_cpu(asset.view(), light), sky, {}, camera);
-        const auto gl = renderer->render(camera);
-        ASSERT_TRUE(cpu && gl);
-        expect_same_picture(*cpu, *gl);
+        both.expect_agreement({.eye = {0.2f, 0.9f, 0.3f},
+                               .target = {-3, 0.2f, -2},
+                               .fov_y = 90,
+                               .width = 150,
+                               .height = 110,
+                               .near_plane = near_plane});
     }
 }
 
 TEST_F(Gl, OnePixelAndExtremeScalesAgree) {
-    const Environment sky = test::make_lat_long(64, 32, test::two_lights);
     for (const float scale : {1e-12f, 1.0f, 1e12f}) {
         Asset asset = make_scene({8, 8, 1, 20});
         for (formats::Vec3& p : asset.position) {
             p = scale * p;
         }
-        const LightVector light = project_environment(sky, 8);
-        auto renderer = GlRenderer::create(asset.view(), sky);
-        ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
-        ASSERT_TRUE(renderer->set_light(light, {}));
+        BothRenderers both(asset, tests::lat_long_map(64, 32, test::two_lights));
         for (const std::uint32_t size : {1u, 120u}) {
-            const Camera camera = frame_asset(asset.view(), 40, size, size);
-            const auto cpu = render_software(asset.view(), radiance_on_cpu(asset.view(), light),
-                                             sky, {}, camera);
-            const auto gl = renderer->render(camera);
-            ASSERT_TRUE(cpu && gl);
-            expect_same_picture(*cpu, *gl);
+            both.expect_agreement(frame_asset(asset.view(), 40, size, size));
         }
     }
 }
 
 TEST_F(Gl, RenderersLiveSideBySideAndLeaveNoContextBehind) {
-    const Environment sky = test::make_lat_long(32, 16, test::two_lights);
-    const Asset asset = make_scene({8, 8, 1, 20});
-    const LightVector light = project_environment(sky, 8);
+    const Environment sky = tests::lat_long_map(32, 16, test::two_lights);
+    const Asset asset = make_scene({8, 8, 1, 20}), nothing;
     const Camera camera = frame_asset(asset.view(), 40, 50, 40);
-    auto first = GlRenderer::create(asset.view(), sky);
-    ASSERT_TRUE(first.has_value());
-    ASSERT_TRUE(first->set_light(light, {}));
-    Picture alone = *first->render(camera);
-    {
-        auto second = GlRenderer::create(Asset{}.view(), sky);
-        ASSERT_TRUE(second.has_value());
-        ASSERT_TRUE(second->render(camera).has_value());
-    }
-    GlRenderer moved = std::move(*first);
+    BothRenderers first(asset, sky);
+    const Picture alone = first.on_gl(camera);
+    BothRenderers(nothing, sky).on_gl(camera);
+    GlRenderer moved = std::move(first.renderer);
     const auto after = moved.render(camera);
     ASSERT_TRUE(after.has_value());
     EXPECT_EQ(alone.pixel, after->pixel);
 }
 
 TEST_F(Gl, StatisticsAreFilledIn) {
-    const Environment sky = test::make_lat_long(32, 16, test::two_lights);
     const Asset asset = make_scene({16, 8, 1, 100});
-    auto renderer = GlRenderer::create(asset.view(), sky);
-    ASSERT_TRUE(renderer.has_value());
-    ASSERT_TRUE(renderer->set_light(project_environment(sky, 16), {}));
-    ASSERT_TRUE(renderer->render(frame_asset(asset.view(), 40, 64, 48)).has_value());
-    const GlStats& stats = renderer->stats();
+    BothRenderers both(asset, tests::lat_long_map(32, 16, test::two_lights));
+    both.on_gl(frame_asset(asset.view(), 40, 64, 48));
+    const GlStats& stats = both.renderer.stats();
     for (const double seconds : {stats.upload_seconds, stats.light_seconds, stats.dot_seconds,
                                  stats.draw_seconds, stats.readback_seconds}) {
         EXPECT_GT(seconds, 0.0);
@@ -260,7 +202,6 @@ TEST_F(Gl, StatisticsAreFilledIn) {
 }
 
 TEST_F(Gl, DamagedValuesNeverReachThePicture) {
-    const Environment sky = test::make_lat_long(32, 16, test::two_lights);
     Asset asset = make_scene({16, 8, 3, 20});
     const Camera camera = frame_asset(asset.view(), 40, 60, 60);
     const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -273,29 +214,18 @@ TEST_F(Gl, DamagedValuesNeverReachThePicture) {
     asset.transport.average_scale[3 * 270 + 1] = 3e38f;
     asset.base_color[280] = {inf, nan, -1};
     asset.texcoord.back() = {nan, inf};
-    auto renderer = GlRenderer::create(asset.view(), sky);
-    ASSERT_TRUE(renderer.has_value());
-    ASSERT_TRUE(renderer->set_light(project_environment(sky, 16), {}));
-    const auto picture = renderer->render(camera);
-    ASSERT_TRUE(picture.has_value());
-    for (const Rgb pixel : picture->pixel) {
-        for (const float value : {pixel.r, pixel.g, pixel.b}) {
-            EXPECT_TRUE(std::isfinite(value) && value >= 0);
-        }
-    }
+    BothRenderers both(asset, tests::lat_long_map(32, 16, test::two_lights));
+    test::expect_displayable(both.on_gl(camera));
 }
 
 TEST_F(Gl, WrongRequestsAreRefusedWithTheReason) {
     const Asset asset = make_scene({16, 8, 1, 20});
-    const Environment sky = test::make_lat_long(32, 16, test::two_lights);
-    auto renderer = GlRenderer::create(asset.view(), sky);
-    ASSERT_TRUE(renderer.has_value());
-    const auto wrong_size = renderer->set_light(project_environment(sky, 8), {});
+    const Environment sky = tests::lat_long_map(32, 16, test::two_lights);
+    BothRenderers both(asset, sky);
+    const auto wrong_size = both.renderer.set_light(project_environment(sky, 8), {});
     ASSERT_FALSE(wrong_size.has_value());
     EXPECT_EQ(wrong_size.error().kind, formats::ErrorKind::usage);
-    Camera camera;
-    camera.width = 0;
-    EXPECT_FALSE(renderer->render(camera).has_value());
+    EXPECT_FALSE(both.renderer.render({.width = 0}).has_value());
     EXPECT_FALSE(GlRenderer::create(asset.view(), sky, {.lanes_per_row = 3}).has_value());
     const auto too_small = GlRenderer::create(asset.view(), sky, {.max_block_bytes = 16});
     ASSERT_FALSE(too_small.has_value());

@@ -4,15 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/gl/gl_renderer.h"
 #include "runtime/gl/gl_volumes.h"
-#include "runtime/picture/software_renderer.h"
-#include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/glow_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
-#include "tests/support/cut_phase.h"
 
 namespace opaline::runtime {
 namespace {
@@ -20,8 +16,8 @@ namespace {
 using formats::Asset;
 using formats::Rgb;
 using formats::TermSet;
+using test::BothRenderers;
 using test::Gl;
-using test::text_of;
 
 constexpr std::uint32_t kSize = 8;
 
@@ -94,16 +90,10 @@ Asset volumes_and_sheet(const std::vector<test::TestVolume>& volumes) {
 }
 
 Camera camera() {
-    Camera at;
-    at.eye = {0.7f, 0.6f, 3.5f};
-    at.width = 90;
-    at.height = 70;
-    at.fov_y = 35;
-    at.near_plane = 0.1f;
-    return at;
+    return {.eye = {0.7f, 0.6f, 3.5f}, .fov_y = 35, .width = 90, .height = 70, .near_plane = 0.1f};
 }
 
-const formats::Environment kSky = test::make_lat_long(64, 32, test::two_lights);
+const formats::Environment kSky = tests::lat_long_map(64, 32, test::two_lights);
 
 // A small light besides, seen from the camera a little beside the volumes.
 formats::Environment sunny() {
@@ -112,43 +102,15 @@ formats::Environment sunny() {
     return sky;
 }
 
-Picture draw_on_cpu(const Asset& asset, const Camera& camera, const GlRenderOptions& options,
-                    const formats::Environment& sky = kSky) {
-    const auto view = asset.view();
-    const LightVector light = project_environment(sky, kSize);
-    formats::Vec3 eye = camera.eye;
-    const auto radiance = shade_for_picture(view, light, eye, options.terms, 0);
-    const VolumeLight volumes = relight_volumes(view.volumes, light, {.terms = options.terms});
-    SoftwareOptions software;
-    software.supersampling = options.supersampling;
-    software.background = options.background;
-    software.volumes = &volumes;
-    auto picture = render_software(view, radiance, sky, {}, camera, software);
-    EXPECT_TRUE(picture.has_value());
-    return std::move(picture).value();
-}
-
-GlRenderer lit_renderer(const Asset& asset, const formats::Environment& sky = kSky) {
-    auto renderer = GlRenderer::create(asset.view(), sky);
-    EXPECT_TRUE(renderer.has_value()) << text_of(renderer.error());
-    EXPECT_TRUE(renderer->set_light(project_environment(sky, kSize), {}));
-    return std::move(renderer).value();
-}
-
 void expect_agreement(const Asset& asset, const Camera& camera, const GlRenderOptions& options = {},
                       const formats::Environment& sky = kSky) {
-    GlRenderer renderer = lit_renderer(asset, sky);
-    const auto gl = renderer.render(camera, options);
-    ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-    test::expect_same_picture(draw_on_cpu(asset, camera, options, sky), *gl);
+    BothRenderers(asset, sky).expect_agreement(camera, options);
 }
 
 // What a bake makes of Henyey-Greenstein functions, two in one picture: each has its own table.
 TEST_F(Gl, ForwardVolumesAgreeUnderASun) {
     const auto forward = [](test::TestVolume volume, double g) {
-        const tests::CutPhase phase = tests::make_cut_phase(g);
-        volume.moment = phase.moments();
-        volume.phase = phase;
+        test::scatter_forward(volume, g);
         volume.sigma_t = 0.3f * volume.sigma_t;
         return volume;
     };
@@ -162,12 +124,9 @@ TEST_F(Gl, ForwardVolumesAgreeUnderASun) {
     ASSERT_GT(lit.part[2].suns, 0u);
     expect_agreement(asset, camera(), {.background = false}, sunny());
     expect_agreement(volumes_and_sheet({near}), camera(), {}, sunny());
-    GlRenderer renderer = lit_renderer(asset, sunny());
+    BothRenderers both(asset, sunny());
     for (const TermSet terms : {TermSet::volume_multiple, TermSet::volume_single}) {
-        const GlRenderOptions options{.terms = terms, .background = false};
-        const auto gl = renderer.render(camera(), options);
-        ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-        test::expect_same_picture(draw_on_cpu(asset, camera(), options, sunny()), *gl);
+        both.expect_agreement(camera(), {.terms = terms, .background = false});
     }
 }
 
@@ -216,13 +175,10 @@ TEST_F(Gl, VolumesAgreeFromInsideAndAtAnyScale) {
 
 TEST_F(Gl, TermsOfVolumesAreShownApart) {
     const Asset asset = volumes_and_sheet({smoke(8, 9, 4), slanted()});
-    GlRenderer renderer = lit_renderer(asset);
+    BothRenderers both(asset, kSky);
     for (const TermSet terms : {TermSet::volume_single, TermSet::volume_multiple, TermSet::diffuse,
                                 TermSet::all, TermSet::volume_multiple | TermSet::diffuse}) {
-        const GlRenderOptions options{.terms = terms, .background = false};
-        const auto gl = renderer.render(camera(), options);
-        ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-        test::expect_same_picture(draw_on_cpu(asset, camera(), options), *gl);
+        both.expect_agreement(camera(), {.terms = terms, .background = false});
     }
 }
 
@@ -236,38 +192,24 @@ TEST_F(Gl, LightOfVolumesAgrees) {
     test::add_glow(asset.volumes, smoke(8, 9, 4), flame, {0.5f, 0.3f, 0.1f});
     // Beside a volume that is dark.
     test::add_volume(asset.volumes, slanted());
-    const LightVector light = project_environment(kSky, kSize);
-    GlRenderer renderer = lit_renderer(asset);
+    BothRenderers both(asset, kSky);
     for (const Rgb color : {Rgb{1, 1, 1}, Rgb{0, 2, 0.5f}, Rgb{}}) {
         const std::array<Rgb, 1> colors{color};
-        ASSERT_TRUE(renderer.set_light(light, {}, {colors}));
-        const auto gl = renderer.render(camera(), {.background = false});
-        ASSERT_TRUE(gl.has_value()) << text_of(gl.error());
-        const VolumeLight volumes =
-            relight_volumes(asset.view().volumes, light, {.emitters = {colors}});
-        SoftwareOptions software;
-        software.supersampling = GlRenderOptions{}.supersampling;
-        software.background = false;
-        software.volumes = &volumes;
-        const auto cpu = render_software(asset.view(), {}, kSky, {}, camera(), software);
-        ASSERT_TRUE(cpu.has_value());
-        test::expect_same_picture(*cpu, *gl);
+        both.set_emitters({colors});
+        both.expect_agreement(camera(), {.background = false});
     }
 }
 
 TEST_F(Gl, VolumesDoNotDependOnTiles) {
     const Asset asset = volumes_and_sheet({smoke(8, 9, 4)});
-    GlRenderer renderer = lit_renderer(asset);
-    const auto whole = renderer.render(camera());
-    const auto tiles = renderer.render(camera(), {.max_tile_samples = 96});
-    ASSERT_TRUE(whole && tiles);
-    test::expect_same_picture(*whole, *tiles);
+    BothRenderers both(asset, kSky);
+    test::expect_same_picture(both.on_gl(camera()), both.on_gl(camera(), {.max_tile_samples = 96}));
 }
 
 TEST_F(Gl, WithoutALightVolumesOnlyAbsorb) {
     const Asset asset = volumes_alone({smoke(8, 4, 4)});
     auto renderer = GlRenderer::create(asset.view(), kSky);
-    ASSERT_TRUE(renderer.has_value()) << text_of(renderer.error());
+    ASSERT_TRUE(renderer.has_value());
     const auto black = renderer->render(camera(), {.background = false});
     const auto sky = renderer->render(camera());
     ASSERT_TRUE(black && sky);
@@ -286,14 +228,7 @@ TEST_F(Gl, DamagedVolumesNeverReachThePicture) {
     asset.volumes.phase[150] = 3e38f;
     asset.volumes.phase[formats::kPhaseEntries + 9] = -1;
     asset.volumes.records[1].to_world = {1e-30f, 0, 0, 0, 0, 1e-30f, 0, 0, 0, 0, 1e-30f, 0};
-    GlRenderer renderer = lit_renderer(asset, sunny());
-    const auto picture = renderer.render(camera());
-    ASSERT_TRUE(picture.has_value());
-    for (const Rgb pixel : picture->pixel) {
-        for (const float value : {pixel.r, pixel.g, pixel.b}) {
-            EXPECT_TRUE(std::isfinite(value) && value >= 0);
-        }
-    }
+    test::expect_displayable(BothRenderers(asset, sunny()).on_gl(camera()));
 }
 
 TEST_F(Gl, VolumesBeyondTheLimitsAreRefusedWithTheReason) {
@@ -301,7 +236,7 @@ TEST_F(Gl, VolumesBeyondTheLimitsAreRefusedWithTheReason) {
     const auto too_small = GlRenderer::create(asset.view(), kSky, {.max_block_bytes = 4096});
     ASSERT_FALSE(too_small.has_value());
     EXPECT_EQ(too_small.error().kind, formats::ErrorKind::resource);
-    EXPECT_NE(text_of(too_small.error()).find("density"), std::string::npos);
+    EXPECT_NE(test::text_of(too_small.error()).find("density"), std::string::npos);
     const auto too_many = GlRenderer::create(
         volumes_alone(std::vector(kMaxGlVolumes + 1, smoke(8, 0, 0))).view(), kSky);
     ASSERT_FALSE(too_many.has_value());

@@ -5,10 +5,9 @@
 #include <cstring>
 
 #include "runtime/picture/software_renderer.h"
-#include "runtime/volumes/volume_march.h"
 #include "tests/runtime/clouds/lit_layer.h"
 #include "tests/runtime/picture/synthetic_asset.h"
-#include "tests/runtime/volumes/synthetic_volume.h"
+#include "tests/runtime/volumes/lit_volumes.h"
 
 namespace opaline::runtime {
 namespace {
@@ -24,7 +23,6 @@ test::TestVolume cube_of_smoke(float height, float sigma_t) {
     volume.single_terms = 1;
     volume.sigma_t = {sigma_t, 1.5f * sigma_t, 2 * sigma_t};
     volume.albedo = {0.9f, 0.7f, 0.4f};
-    volume.density = [](float, float, float) { return 1.0f; };
     return volume;
 }
 
@@ -49,33 +47,16 @@ formats::Environment sky_with_sun(Vec3 to_sun = {1, 0.5f, 0}) {
 
 // One pixel from the ground straight up.
 Camera pixel_upward() {
-    Camera camera;
-    camera.eye = {0, 2, 0};
-    camera.target = {0, 1000, 0};
-    camera.up = {1, 0, 0};
-    camera.width = camera.height = 1;
-    camera.fov_y = 0.05f;
-    camera.near_plane = 0.1f;
-    return camera;
+    return {.eye = {0, 2, 0},
+            .target = {0, 1000, 0},
+            .up = {1, 0, 0},
+            .fov_y = 0.05f,
+            .width = 1,
+            .height = 1,
+            .near_plane = 0.1f};
 }
 
-struct Smoke {
-    formats::Volumes volumes = test::make_volumes(test::kSize);
-    formats::VolumesView view;
-    VolumeLight light;
-
-    explicit Smoke(const test::TestVolume& volume) {
-        test::add_volume(volumes, volume);
-        view = volumes.view();
-        light = relight_volumes(view, test::white_light(test::kSize));
-    }
-    Smoke(const Smoke&) = delete;
-    Smoke& operator=(const Smoke&) = delete;
-
-    MarchResult along(Vec3 origin, Vec3 direction) const {
-        return march_volumes(light_volumes(view, light), {origin, direction});
-    }
-};
+using Smoke = test::LitTestVolumes;
 
 Picture draw_with(const test::LitLayer& lit, const Smoke* smoke, const Camera& camera,
                   unsigned threads = 1) {
@@ -95,7 +76,7 @@ Picture draw_with(const test::LitLayer& lit, const Smoke* smoke, const Camera& c
 }
 
 Rgb seen_upward(const test::LitLayer& lit, float height, float sigma_t) {
-    const Smoke smoke(cube_of_smoke(height, sigma_t));
+    const Smoke smoke({cube_of_smoke(height, sigma_t)});
     return draw_with(lit, &smoke, pixel_upward()).pixel[0];
 }
 
@@ -115,9 +96,9 @@ TEST(LayerAndVolumes, OpaqueSmokeBehindAThickLayerIsInvisible) {
 
 TEST(LayerAndVolumes, OpaqueSmokeInFrontHidesTheLayer) {
     const test::LitLayer lit(even_clouds(1000), sky_with_sun());
-    const Smoke smoke(cube_of_smoke(500, 1));
+    const Smoke smoke({cube_of_smoke(500, 1)});
     expect_close(draw_with(lit, &smoke, pixel_upward()).pixel[0],
-                 smoke.along({0, 2, 0}, {0, 1, 0}).radiance, 1e-6f);
+                 march_volumes(smoke.lit, {{0, 2, 0}, {0, 1, 0}}).radiance, 1e-6f);
 }
 
 // By the formulas of volume_pass.h, with the sky and perhaps a sun behind both.
@@ -128,7 +109,7 @@ void expect_composed_by_depth(const test::LitLayer& lit, Rgb sun) {
     ASSERT_LT(layer.transmittance.g, 0.8f);
     const Rgb sky{0.1f, 0.1f, 0.1f};
     const Rgb behind = layer.glow + layer.transmittance * sky + layer.sun_transmittance * sun;
-    const MarchResult smoke = Smoke(cube_of_smoke(500, 0.01f)).along(eye, up);
+    const MarchResult smoke = march_volumes(Smoke({cube_of_smoke(500, 0.01f)}).lit, {eye, up});
     expect_close(seen_upward(lit, 500, 0.01f),
                  smoke.radiance + smoke.transmittance * (layer.radiance + behind), 1e-3f);
     expect_close(
@@ -168,14 +149,14 @@ TEST(LayerAndVolumes, TheGroundHidesSmokeBeneathIt) {
     down.eye = {0, 500, 0};
     down.target = {0, 0, 0};
     const Rgb alone = draw_with(lit, nullptr, down).pixel[0];
-    const Smoke under(cube_of_smoke(-40, 1)), above(cube_of_smoke(100, 1));
+    const Smoke under({cube_of_smoke(-40, 1)}), above({cube_of_smoke(100, 1)});
     expect_close(draw_with(lit, &under, down).pixel[0], alone, 1e-6f);
     EXPECT_GT(draw_with(lit, &above, down).pixel[0].g, 1.2f * alone.g);
 }
 
 TEST(LayerAndVolumes, HaveTheSameBitsForAnyNumberOfThreads) {
     const test::LitLayer lit(even_clouds(100), sky_with_sun());
-    const Smoke smoke(cube_of_smoke(1030, 0.02f));
+    const Smoke smoke({cube_of_smoke(1030, 0.02f)});
     Camera camera = pixel_upward();
     camera.width = 16;
     camera.height = 40;

@@ -28,20 +28,12 @@ formats::Clouds pass_clouds(bool empty) {
     return clouds;
 }
 
-formats::Environment day() {
-    formats::Environment environment = test::white_sky(0.1f);
-    environment.discs = test::one_sun(0.5, 0.2).discs;
-    return environment;
-}
-
 Camera camera_toward(formats::Vec3 eye, formats::Vec3 direction) {
-    Camera camera;
-    camera.eye = eye;
-    camera.target = eye + 100.0f * direction;
-    camera.width = 96;
-    camera.height = 72;
-    camera.near_plane = 0.1f;
-    return camera;
+    return {.eye = eye,
+            .target = eye + 100.0f * direction,
+            .width = 96,
+            .height = 72,
+            .near_plane = 0.1f};
 }
 
 Picture draw(const test::LitLayer& lit, const Camera& camera, unsigned threads = 2,
@@ -59,7 +51,7 @@ Picture draw(const test::LitLayer& lit, const Camera& camera, unsigned threads =
 }
 
 TEST(LayerPass, WithoutCloudsTheSkyIsTheBackgroundAndItsSunHasItsFlux) {
-    const test::LitLayer lit(pass_clouds(true), day());
+    const test::LitLayer lit(pass_clouds(true), test::sunny_day(0.1f, 0.5, 0.2));
     const Camera up = camera_toward({0, 10, 0}, lit.light.sun.front().direction);
     const Picture seen = draw(lit, up);
     SoftwareOptions plain;
@@ -72,7 +64,7 @@ TEST(LayerPass, WithoutCloudsTheSkyIsTheBackgroundAndItsSunHasItsFlux) {
 }
 
 TEST(LayerPass, SmoothPixelsAreWhatTheirSamplesAre) {
-    const test::LitLayer lit(pass_clouds(false), day());
+    const test::LitLayer lit(pass_clouds(false), test::sunny_day(0.1f, 0.5, 0.2));
     for (const auto& camera : {camera_toward({0, 0, 0}, test::direction_of(0.6, 2)),
                                camera_toward({0, 2000, 0}, test::direction_of(-0.3, 1)),
                                camera_toward({0, 0, 0}, test::direction_of(0.01, 2))}) {
@@ -101,7 +93,7 @@ TEST(LayerPass, SmoothPixelsAreWhatTheirSamplesAre) {
 }
 
 TEST(LayerPass, SurfacesStayWhereTheyAreInFrontOfEverything) {
-    const test::LitLayer lit(pass_clouds(false), day());
+    const test::LitLayer lit(pass_clouds(false), test::sunny_day(0.1f, 0.5, 0.2));
     const Camera camera = camera_toward({0, 500, 0}, {0, -1, 0});
     Band band;
     reset_band(band, 0, 2, 2);

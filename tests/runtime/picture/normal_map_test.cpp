@@ -64,7 +64,7 @@ TEST(NormalMap, FlatOneChangesNothing) {
     const auto flat = test::make_even_normals({0, 0, 1});
     ASSERT_EQ(flat.rgb, (std::vector<std::uint8_t>{128, 128, 255}));
     for (const auto& light :
-         {sun(normalize(Vec3{1, 1, 0.5f})), test::make_lat_long(64, 32, test::two_lights)}) {
+         {sun(normalize(Vec3{1, 1, 0.5f})), tests::lat_long_map(64, 32, test::two_lights)}) {
         Asset asset = sheet_of(flat, 1, {1, 0, 0}, 1);
         const Picture with = draw(asset, light);
         asset.normal_maps = {};

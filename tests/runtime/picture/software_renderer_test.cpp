@@ -51,7 +51,7 @@ std::pair<std::uint32_t, std::uint32_t> brightest(const Picture& picture) {
 }
 
 Environment spot_toward(Vec3 direction) {
-    return test::make_lat_long(256, 128, [direction](Vec3 d) {
+    return tests::lat_long_map(256, 128, [direction](Vec3 d) {
         const float value = dot(d, direction) > 0.995f ? 1.0f : 0.0f;
         return Rgb{value, value, value};
     });
@@ -82,8 +82,8 @@ TEST(Background, TurnsWithTheLightFromZTowardX) {
 
 TEST(Background, CubeAndLatLongOfTheSameSkyLookAlike) {
     const Camera camera = camera_at({0, 0, 0}, {0.6f, 0.3f, -1}, 80, 60, 90);
-    const Picture a = draw({}, {}, test::make_lat_long(512, 256, test::two_lights), camera);
-    const Picture b = draw({}, {}, test::make_cube(128, test::two_lights), camera);
+    const Picture a = draw({}, {}, tests::lat_long_map(512, 256, test::two_lights), camera);
+    const Picture b = draw({}, {}, tests::cube_map(128, test::two_lights), camera);
     for (std::size_t i = 0; i < a.pixel.size(); ++i) {
         // Bilinear interpolation of a smooth sky over texels of 0.7 degrees.
         EXPECT_NEAR(a.pixel[i].r, b.pixel[i].r, 2e-3f * (1 + a.pixel[i].r));
@@ -179,7 +179,7 @@ TEST(Surfaces, AreSeenWhereTheyHaveNoHoles) {
     test::add_bare_primitive(asset, test::make_sheet({0, 0, 0}, {4, 0, 0}, {0, 4, 0}, 2, 1));
     asset.images.push_back({2, 1, {0, 0, 0, 255, 255, 255}});
     const std::vector<Rgb> radiance(asset.position.size());
-    const Environment sky = test::make_lat_long(8, 4, [](Vec3) { return Rgb{1, 1, 1}; });
+    const Environment sky = tests::lat_long_map(8, 4, [](Vec3) { return Rgb{1, 1, 1}; });
     const Camera camera = camera_at({0, 0, 2}, {0, 0, 0}, 32, 16, 0.5f);
     const auto seen_sky = [&](const formats::HoleRecord& hole) {
         asset.holes.record = {hole};
@@ -241,7 +241,7 @@ TEST(Picture, IsTheSameForAnyNumberOfThreads) {
     for (const Vec3 n : asset.normal) {
         radiance.push_back({n.x + 1, n.y + 1, n.z + 1});
     }
-    const Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    const Environment sky = tests::lat_long_map(64, 32, test::two_lights);
     const Camera camera = frame_asset(asset.view(), 50, 97, 71);
     SoftwareOptions one, five;
     one.threads = 1;
@@ -251,7 +251,7 @@ TEST(Picture, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(Picture, EmptyAssetShowsTheEnvironmentAlone) {
-    const Environment white = test::make_lat_long(16, 8, [](Vec3) { return Rgb{1, 1, 1}; });
+    const Environment white = tests::lat_long_map(16, 8, [](Vec3) { return Rgb{1, 1, 1}; });
     for (const auto& [width, height] : {std::pair{1u, 1u}, std::pair{33u, 2u}}) {
         const Picture picture = draw({}, {}, white, frame_asset(Asset{}.view(), 40, width, height));
         ASSERT_EQ(picture.pixel.size(), std::size_t{width} * height);
@@ -305,7 +305,7 @@ TEST(Surfaces, OfOneSideAreNotDrawnFromBehind) {
                             {.is_double_sided = is_double_sided});
         const std::vector<Rgb> red(asset.position.size(), Rgb{1, 0, 0});
         asset.base_color.assign(asset.position.size(), Rgb{1, 1, 1});
-        const Environment green = test::make_lat_long(8, 4, [](Vec3) { return Rgb{0, 1, 0}; });
+        const Environment green = tests::lat_long_map(8, 4, [](Vec3) { return Rgb{0, 1, 0}; });
         for (const float side : {1.0f, -1.0f}) {
             const Picture picture =
                 draw(asset, red, green, camera_at({0, 0, 3 * side}, {0, 0, 0}, 5, 5, 20));

@@ -217,36 +217,6 @@ formats::PreviewImageData make_noise_image(std::uint32_t width, std::uint32_t he
     return image;
 }
 
-formats::Environment make_lat_long(std::uint32_t width, std::uint32_t height,
-                                   const std::function<Rgb(Vec3)>& radiance) {
-    formats::Environment environment;
-    environment.width = width;
-    environment.height = height;
-    for (std::uint32_t row = 0; row < height; ++row) {
-        const float theta = kPi * (static_cast<float>(row) + 0.5f) / static_cast<float>(height);
-        for (std::uint32_t column = 0; column < width; ++column) {
-            // Default orientation: u = 1/2 + atan2(z, x) / (2 pi).
-            const float u = (static_cast<float>(column) + 0.5f) / static_cast<float>(width);
-            const float phi = 2 * kPi * (u - 0.5f);
-            environment.pixel.push_back(radiance({std::sin(theta) * std::cos(phi), std::cos(theta),
-                                                  std::sin(theta) * std::sin(phi)}));
-        }
-    }
-    return environment;
-}
-
-formats::Environment make_cube(std::uint32_t n, const std::function<Rgb(Vec3)>& radiance) {
-    formats::Environment environment;
-    environment.layout = formats::Environment::Layout::cube;
-    environment.width = n;
-    environment.height = 6 * n;
-    for (std::uint32_t j = 0; j < formats::cubemap_texels(n); ++j) {
-        environment.pixel.push_back(
-            radiance(formats::texel_direction(n, j / (n * n), j / n % n, j % n)));
-    }
-    return environment;
-}
-
 Rgb two_lights(Vec3 d) {
     const float warm = std::pow(std::max(0.0f, d.x), 8.0f);
     const float cool = std::pow(std::max(0.0f, -d.z), 4.0f);

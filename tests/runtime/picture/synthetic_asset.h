@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "formats/opal/asset.h"
-#include "formats/opal/environment.h"
+#include "tests/support/sky_maps.h"
 
 namespace opaline::test {
 
@@ -63,14 +62,6 @@ formats::Vec3 coded_normal(const formats::PreviewImageData& even);
 
 /// Colourful noise, so that a mirrored or shifted image shows.
 formats::PreviewImageData make_noise_image(std::uint32_t width, std::uint32_t height);
-
-/// Lat-long map from a function of direction.
-formats::Environment make_lat_long(std::uint32_t width, std::uint32_t height,
-                                   const std::function<formats::Rgb(formats::Vec3)>& radiance);
-
-/// Cube map from a function of direction.
-formats::Environment make_cube(std::uint32_t n,
-                               const std::function<formats::Rgb(formats::Vec3)>& radiance);
 
 /// A smooth sky with a warm light from +X and a cool one from behind, different everywhere.
 formats::Rgb two_lights(formats::Vec3 direction);

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <functional>
 
-#include "formats/opal/half.h"
-#include "formats/opal/shared_exponent.h"
 #include "runtime/volumes/volume_bounds.h"
 #include "runtime/volumes/volume_sample.h"
 #include "tests/runtime/volumes/glow_support.h"

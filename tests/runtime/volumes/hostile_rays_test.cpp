@@ -6,17 +6,17 @@
 #include <random>
 
 #include "runtime/volumes/volume_bounds.h"
-#include "runtime/volumes/volume_march.h"
-#include "tests/runtime/volumes/synthetic_volume.h"
+#include "tests/runtime/volumes/lit_volumes.h"
 
 namespace opaline::runtime {
 namespace {
 
 using formats::Rgb;
 using formats::Vec3;
+using test::kSize;
+using test::LitTestVolumes;
 using test::TestVolume;
 
-using test::kSize;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TestVolume full(std::array<float, 12> to_world) {
@@ -27,7 +27,6 @@ TestVolume full(std::array<float, 12> to_world) {
     volume.moment = {1, 0.5f, 0, 0, 0};
     volume.sigma_t = {0.1f, 3, 1e30f};
     volume.to_world = to_world;
-    volume.density = [](float, float, float) { return 1.0f; };
     return volume;
 }
 
@@ -44,15 +43,12 @@ void expect_sound(const LitVolumes& lit, const MarchRay& ray) {
 }
 
 TEST(HostileRays, GiveFiniteValuesInNoTime) {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    test::add_volume(volumes, full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
-    test::add_volume(volumes, full({1e-30f, 0, 0, 0, 0, 1e-30f, 0, 0, 0, 0, 1e-30f, 0}));
-    test::add_volume(volumes, full({1e30f, 0, 0, 1e38f, 0, 1, 0, 0, 0, 0, 1e-30f, 3}));
-    test::add_volume(volumes, full({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}));
-    test::add_volume(volumes, full({1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0}));
-    const auto view = volumes.view();
-    const VolumeLight light = relight_volumes(view, test::white_light(kSize));
-    const LitVolumes lit = light_volumes(view, light);
+    const LitTestVolumes scene({full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}),
+                                full({1e-30f, 0, 0, 0, 0, 1e-30f, 0, 0, 0, 0, 1e-30f, 0}),
+                                full({1e30f, 0, 0, 1e38f, 0, 1, 0, 0, 0, 0, 1e-30f, 3}),
+                                full({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}),
+                                full({1, 1, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0})});
+    const LitVolumes& lit = scene.lit;
     EXPECT_EQ(lit.entry.size(), 3u);  // two have no inverse
 
     const auto start = std::chrono::steady_clock::now();
@@ -72,35 +68,27 @@ TEST(HostileRays, GiveFiniteValuesInNoTime) {
 }
 
 TEST(HostileRays, NothingIsMetBetweenAnEndBeforeItsBeginOrWithoutDirection) {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    test::add_volume(volumes, full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
-    const auto view = volumes.view();
-    const VolumeLight light = relight_volumes(view, test::white_light(kSize));
-    const LitVolumes lit = light_volumes(view, light);
+    const LitTestVolumes scene({full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})});
     const double nan = std::numeric_limits<double>::quiet_NaN();
     for (const MarchRay& ray :
          {MarchRay{{0, 0, 0}, {1, 0, 0}, 5, 3}, MarchRay{{0, 0, 0}, {1, 0, 0}, 5, 5},
           MarchRay{{0, 0, 0}, {0, 0, 0}}, MarchRay{{0, 0, 0}, {1, 0, 0}, nan},
           MarchRay{{0, 0, 0}, {1, 0, 0}, 0, nan}}) {
-        const MarchResult seen = march_volumes(lit, ray);
+        const MarchResult seen = march_volumes(scene.lit, ray);
         EXPECT_EQ(seen.radiance, Rgb{});
         EXPECT_EQ(seen.transmittance, (Rgb{1, 1, 1}));
     }
 }
 
 TEST(HostileRays, ABoxSeenAlongItsFacesAndEdges) {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    test::add_volume(volumes, full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}));
-    const auto view = volumes.view();
-    const VolumeLight light = relight_volumes(view, test::white_light(kSize));
-    const LitVolumes lit = light_volumes(view, light);
+    const LitTestVolumes scene({full({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0})});
     // Along faces between bricks the density is 1 all the same.
     for (const float at : {-8.0f, 0.0f, 8.0f, 0.5f}) {
-        const MarchResult seen = march_volumes(lit, {{at, at, -100}, {0, 0, 1}, 0, 115});
+        const MarchResult seen = march_volumes(scene.lit, {{at, at, -100}, {0, 0, 1}, 0, 115});
         EXPECT_NEAR(seen.transmittance.r, std::exp(-3.1), 1e-5);
     }
     const float d = 1 / std::sqrt(3.0f);
-    const MarchResult corner = march_volumes(lit, {{-116, -116, -116}, {d, d, d}});
+    const MarchResult corner = march_volumes(scene.lit, {{-116, -116, -116}, {d, d, d}});
     EXPECT_LT(corner.transmittance.r, std::exp(-0.1 * 31 * std::sqrt(3.0)));
 }
 

@@ -9,7 +9,7 @@
 #include "formats/opal/cubemap.h"
 #include "runtime/volumes/node_radiance.h"
 #include "tests/runtime/light_test_support.h"
-#include "tests/runtime/volumes/synthetic_volume.h"
+#include "tests/runtime/volumes/lit_volumes.h"
 
 namespace opaline::runtime {
 namespace {
@@ -19,28 +19,19 @@ using formats::Rgb;
 using formats::SparseRow;
 using formats::TermSet;
 using formats::Vec3;
+using test::kSize;
+using test::LitTestVolumes;
 using test::TestVolume;
 
-using test::kSize;
-
-TestVolume full_brick() {
-    TestVolume volume;
-    volume.density = [](float, float, float) { return 1.0f; };
-    return volume;
-}
-
 TEST(RelightVolumes, IsotropicSingleScatteringIsTheLightOverTheSphere) {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    TestVolume volume = full_brick();
+    TestVolume volume;
     volume.single_terms = 1;
-    test::add_volume(volumes, volume);
     const LightVector light = test::texel_light(kSize, 17, {1, 2, 4});
-    const auto view = volumes.view();
-    const VolumeLight lit = relight_volumes(view, light);
-    ASSERT_EQ(lit.part.size(), 1u);
-    EXPECT_EQ(lit.part[0].terms, 1u);
-    ASSERT_EQ(lit.coefficient.size(), 8u);
-    for (const Rgb j : node_radiance(view, lit, 0, std::nullopt)) {
+    const LitTestVolumes lit({volume}, light);
+    ASSERT_EQ(lit.light.part.size(), 1u);
+    EXPECT_EQ(lit.light.part[0].terms, 1u);
+    ASSERT_EQ(lit.light.coefficient.size(), 8u);
+    for (const Rgb j : node_radiance(lit.view, lit.light, 0, std::nullopt)) {
         EXPECT_NEAR(j.r, tests::flux(light, 0) / (4 * std::numbers::pi), 1e-7);
         EXPECT_NEAR(j.g, 2 * j.r, 1e-7);
         EXPECT_NEAR(j.b, 4 * j.r, 1e-7);
@@ -59,22 +50,19 @@ double phase(const std::array<float, 5>& moment, double c) {
 }
 
 TEST(RelightVolumes, SingleScatteringFollowsThePhaseFunction) {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    TestVolume volume = full_brick();
+    TestVolume volume;
     volume.single_terms = 25;
     volume.moment = {1, 0.45f, 0.3f, 0.2f, 0.12f};
-    test::add_volume(volumes, volume);
     constexpr std::uint32_t texel = 3 * kSize * kSize + 2 * kSize + 5;
     const LightVector light = test::texel_light(kSize, texel, {1, 1, 1});
     const Vec3 toward_light = formats::texel_direction(kSize, 3, 2, 5);
-    const auto view = volumes.view();
-    const VolumeLight lit = relight_volumes(view, light);
+    const LitTestVolumes lit({volume}, light);
     const double flux = tests::flux(light, 0);
     bool has_forward = false;
     for (const Vec3 eye : {Vec3{90, 20, -50}, Vec3{-3, 70, 2}, Vec3{1, -80, 30}, Vec3{-60, 1, 9}}) {
-        const auto radiance = node_radiance(view, lit, 0, eye);
+        const auto radiance = node_radiance(lit.view, lit.light, 0, eye);
         for (std::size_t i = 0; i < radiance.size(); ++i) {
-            const NodeVoxel node = view.node[i];
+            const NodeVoxel node = lit.view.node[i];
             const Vec3 to_eye = formats::normalize(eye - Vec3{static_cast<float>(node[0]),
                                                               static_cast<float>(node[1]),
                                                               static_cast<float>(node[2])});
@@ -88,8 +76,7 @@ TEST(RelightVolumes, SingleScatteringFollowsThePhaseFunction) {
 }
 
 TEST(RelightVolumes, MultipleScatteringOfOneTermHasFactorOne) {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    TestVolume volume = full_brick();
+    TestVolume volume;
     volume.single_terms = 4;
     volume.multiple_terms = 1;
     volume.moment = {1, 0.5f, 0, 0, 0};
@@ -97,12 +84,9 @@ TEST(RelightVolumes, MultipleScatteringOfOneTermHasFactorOne) {
         return std::vector<SparseRow>{test::constant_row(kSize, 0.25f),
                                       test::constant_row(kSize, 0.125f)};
     };
-    test::add_volume(volumes, volume);
-    const auto view = volumes.view();
-    const LightVector white = test::white_light(kSize);
     const auto first = [&](TermSet terms) {
-        const VolumeLight lit = relight_volumes(view, white, {.terms = terms});
-        return node_radiance(view, lit, 0, Vec3{100, 3, 4}).front().r;
+        const LitTestVolumes lit({volume}, test::white_light(kSize), {.terms = terms});
+        return node_radiance(lit.view, lit.light, 0, Vec3{100, 3, 4}).front().r;
     };
     const double four_pi = 4 * std::numbers::pi;
     EXPECT_NEAR(first(TermSet::volume_multiple), 0.125 * four_pi, 1e-4);
@@ -112,8 +96,7 @@ TEST(RelightVolumes, MultipleScatteringOfOneTermHasFactorOne) {
 }
 
 TEST(RelightVolumes, TermsOfMoreHarmonicsAddUpAndHaveNoMeanBeyondTheFirst) {
-    formats::Volumes volumes = test::make_volumes(kSize);
-    TestVolume volume = full_brick();
+    TestVolume volume;
     volume.multiple_terms = 4;
     volume.bands = 3;
     volume.rows = [](NodeVoxel) {
@@ -122,21 +105,19 @@ TEST(RelightVolumes, TermsOfMoreHarmonicsAddUpAndHaveNoMeanBeyondTheFirst) {
             test::constant_row(kSize, 0, 3), test::constant_row(kSize, 0, 3),
             test::constant_row(kSize, 0.1f, 3)};
     };
-    test::add_volume(volumes, volume);
-    const auto view = volumes.view();
-    const VolumeLight lit = relight_volumes(view, test::white_light(kSize));
-    EXPECT_EQ(lit.part[0].terms, 4u);
+    const LitTestVolumes lit({volume});
+    EXPECT_EQ(lit.light.part[0].terms, 4u);
     const double four_pi = 4 * std::numbers::pi, y0 = 1 / std::sqrt(four_pi);
-    EXPECT_NEAR(node_radiance(view, lit, 0, std::nullopt)[0].g, four_pi * y0, 1e-4);
+    EXPECT_NEAR(node_radiance(lit.view, lit.light, 0, std::nullopt)[0].g, four_pi * y0, 1e-4);
     // Y_3 = sqrt(3 / (4 pi)) x.
-    EXPECT_NEAR(node_radiance(view, lit, 0, Vec3{1e6f, 0, 0})[0].g,
+    EXPECT_NEAR(node_radiance(lit.view, lit.light, 0, Vec3{1e6f, 0, 0})[0].g,
                 four_pi * (y0 + 0.1 * std::sqrt(3.0) * y0), 1e-4);
 }
 
 TEST(RelightVolumes, IsTheSameForAnyNumberOfThreadsAndSecondVolumesHaveTheirOwnRows) {
     formats::Volumes volumes = test::make_volumes(kSize);
     for (const float factor : {1.0f, 3.0f}) {
-        TestVolume volume = full_brick();
+        TestVolume volume;
         volume.spacing = 1;
         volume.extent = {2, 1, 1};
         volume.single_terms = 9;

@@ -10,7 +10,6 @@
 #include "runtime/volumes/volume_march.h"
 #include "tests/runtime/light_test_support.h"
 #include "tests/runtime/volumes/lit_volumes.h"
-#include "tests/support/cut_phase.h"
 
 namespace opaline::runtime {
 namespace {
@@ -32,16 +31,13 @@ LightVector sun_of_texel() {
 
 // Of 16 x 16 x 16 m. `reach`: the share of light that rows say reaches nodes from all around.
 TestVolume even_box(float sigma_t, float reach, std::uint32_t spacing = 2) {
-    const tests::CutPhase phase = tests::make_cut_phase(0.85);
     TestVolume volume;
     volume.extent = {2, 2, 2};
     volume.spacing = spacing;
     volume.single_terms = 25;
-    volume.moment = phase.moments();
-    volume.phase = phase;
+    test::scatter_forward(volume, 0.85);
     volume.sigma_t = {sigma_t, sigma_t, sigma_t};
     volume.albedo = {0.9f, 0.9f, 0.9f};
-    volume.density = [](float, float, float) { return 1.0f; };
     volume.rows = [reach](formats::NodeVoxel) {
         return std::vector<formats::SparseRow>{test::constant_row(test::kSize, reach)};
     };

@@ -93,7 +93,7 @@ struct PlacedWaves {
     formats::VolumesView view;
     std::vector<SunColumns> placed;
 
-    explicit PlacedWaves(std::initializer_list<TestVolume> parts) {
+    explicit PlacedWaves(const std::vector<TestVolume>& parts) {
         for (const TestVolume& part : parts) {
             test::add_volume(volumes, part);
         }
@@ -116,7 +116,7 @@ TEST(SunColumns, VolumesKnowTheirNumberInTheAssetWhereOneBeforeThemIsEmpty) {
 TEST(SunColumns, AreIntegralsOfTheDensityTowardEachSun) {
     const std::vector<Vec3> suns = some_suns();
     for (const std::uint32_t spacing : {1u, 2u, 4u, 8u}) {
-        PlacedWaves waves_of{waves(spacing)};
+        PlacedWaves waves_of({waves(spacing)});
         find_sun_columns(waves_of.placed, suns, 2);
         const SunColumns& columns = waves_of.placed[0];
         ASSERT_LT(columns.cell_of_brick.size(), 7u * 6 * 5);
@@ -143,7 +143,7 @@ TEST(SunColumns, AreIntegralsOfTheDensityTowardEachSun) {
 
 TEST(SunColumns, FromAnywhereAreThoseOfTheirPointsAndOfPlacesBeforeAndBehindThem) {
     const std::vector<Vec3> suns = some_suns();
-    PlacedWaves waves_of{waves(4)};
+    PlacedWaves waves_of({waves(4)});
     find_sun_columns(waves_of.placed, suns, 1);
     const SunColumns& columns = waves_of.placed[0];
     for (std::size_t s = 0; s < suns.size(); ++s) {
@@ -165,11 +165,10 @@ TEST(SunShadows, OnlyVolumesTowardTheSunMayShade) {
     std::vector<TestVolume> row;
     for (std::size_t i = 0; i < 6; ++i) {
         TestVolume volume;
-        volume.density = [](float, float, float) { return 1.0f; };
         volume.to_world[3] = 20 * static_cast<float>(i);
         row.push_back(volume);
     }
-    PlacedWaves placed{row[0], row[1], row[2], row[3], row[4], row[5]};
+    PlacedWaves placed(row);
     const float d = 1 / std::sqrt(2.0f);
     const std::vector<Vec3> suns{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {d, d, 0}};
     const auto shades = find_shades(placed.placed, 2, suns);
@@ -188,7 +187,6 @@ TEST(SunShadows, OfLeaningVolumesNoneIsMissed) {
     for (int i = 0; i < 8; ++i) {
         TestVolume volume;
         volume.extent = {2, 1, 2};
-        volume.density = [](float, float, float) { return 1.0f; };
         for (std::size_t r = 0; r < 3; ++r) {
             for (std::size_t c = 0; c < 3; ++c) {
                 volume.to_world[4 * r + c] = even(generator) + (r == c ? 1.5f : 0);
@@ -197,8 +195,7 @@ TEST(SunShadows, OfLeaningVolumesNoneIsMissed) {
         }
         parts.push_back(volume);
     }
-    PlacedWaves placed{parts[0], parts[1], parts[2], parts[3],
-                       parts[4], parts[5], parts[6], parts[7]};
+    PlacedWaves placed(parts);
     const std::vector<Vec3> suns = some_suns();
     find_sun_columns(placed.placed, suns, 1);
     int met = 0, left_out = 0;

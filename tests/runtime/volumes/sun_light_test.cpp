@@ -38,13 +38,10 @@ Vec3 toward_texel() {
 
 // Thin, with V = 1 and what a bake makes of a Henyey-Greenstein function.
 TestVolume forward(double g) {
-    const tests::CutPhase phase = tests::make_cut_phase(g);
     TestVolume volume;
     volume.single_terms = 25;
-    volume.moment = phase.moments();
-    volume.phase = phase;
+    test::scatter_forward(volume, g);
     volume.sigma_t = {1e-5f, 1e-5f, 1e-5f};
-    volume.density = [](float, float, float) { return 1.0f; };
     return volume;
 }
 

@@ -10,7 +10,6 @@
 
 #include "formats/opal/phase_table.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
-#include "tests/support/cut_phase.h"
 
 namespace opaline::runtime {
 namespace {
@@ -19,12 +18,9 @@ using formats::kPhaseEntries;
 
 // What a bake makes of a Henyey-Greenstein function.
 formats::Volumes forward_volume(double g) {
-    const tests::CutPhase phase = tests::make_cut_phase(g);
     test::TestVolume volume;
     volume.single_terms = 25;
-    volume.moment = phase.moments();
-    volume.phase = phase;
-    volume.density = [](float, float, float) { return 1.0f; };
+    test::scatter_forward(volume, g);
     formats::Volumes volumes = test::make_volumes(test::kSize);
     test::add_volume(volumes, volume);
     return volumes;

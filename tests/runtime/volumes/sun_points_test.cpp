@@ -10,7 +10,6 @@
 #include "runtime/volumes/volume_lattice.h"
 #include "tests/runtime/light_test_support.h"
 #include "tests/runtime/volumes/lit_volumes.h"
-#include "tests/support/cut_phase.h"
 
 namespace opaline::runtime {
 namespace {
@@ -24,15 +23,12 @@ constexpr std::uint32_t kSideTexel = 3 * 8 + 3;  // toward +x, a little up and a
 
 // Even, of 3 x 3 x 3 bricks; its light is white and rows let all of it through.
 TestVolume even_body(Rgb sigma_t, std::uint32_t spacing) {
-    const tests::CutPhase phase = tests::make_cut_phase(0.5);
     TestVolume volume;
     volume.extent = {3, 3, 3};
     volume.spacing = spacing;
     volume.single_terms = 4;
-    volume.moment = phase.moments();
-    volume.phase = phase;
+    test::scatter_forward(volume, 0.5);
     volume.sigma_t = sigma_t;
-    volume.density = [](float, float, float) { return 1.0f; };
     return volume;
 }
 

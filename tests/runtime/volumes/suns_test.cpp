@@ -181,7 +181,6 @@ TEST(Suns, OfLightThatIsNoLightAreFinite) {
 // The moments hold these phase functions to 1 %: suns would cost time and change nothing.
 TEST(Suns, AreNotNeededWherePolynomialsAreThePhaseFunction) {
     test::TestVolume volume;
-    volume.density = [](float, float, float) { return 1.0f; };
     const auto needs = [&](std::uint32_t terms, std::array<float, 5> moment,
                            std::function<double(double)> phase) {
         formats::Volumes volumes = test::make_volumes(kSize);

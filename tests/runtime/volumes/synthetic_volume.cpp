@@ -5,6 +5,7 @@
 #include <map>
 
 #include "formats/opal/cubemap.h"
+#include "tests/support/cut_phase.h"
 
 namespace opaline::test {
 namespace {
@@ -76,6 +77,23 @@ void append_phase(formats::Volumes& volumes, const TestVolume& volume) {
 }
 
 }  // namespace
+
+void scatter_forward(TestVolume& volume, double g) {
+    const tests::CutPhase phase = tests::make_cut_phase(g);
+    volume.moment = phase.moments();
+    volume.phase = phase;
+}
+
+TestVolume smoke_ball() {
+    TestVolume volume;
+    volume.extent = {4, 4, 4};
+    volume.single_terms = 1;
+    volume.density = [](float x, float y, float z) {
+        const float r2 = (x - 16) * (x - 16) + (y - 16) * (y - 16) + (z - 16) * (z - 16);
+        return std::max(0.0f, 1 - r2 / 200);
+    };
+    return volume;
+}
 
 formats::Volumes make_volumes(std::uint32_t n) {
     formats::Volumes volumes;

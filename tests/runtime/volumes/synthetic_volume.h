@@ -24,12 +24,18 @@ struct TestVolume {
     /// `single_terms` has, not below 0.
     std::function<double(double)> phase;
     /// Density at index coordinates; bricks where it is 0 at every voxel are left out.
-    std::function<float(float, float, float)> density;
+    std::function<float(float, float, float)> density = [](float, float, float) { return 1.0f; };
     /// Rows of the node in a voxel, terms() of them; without it V = 1 and T_k = 0.
     std::function<std::vector<formats::SparseRow>(formats::NodeVoxel)> rows;
 };
 
 inline constexpr std::uint32_t kSize = 8;  ///< texels along an edge of a face in these tests
+
+/// What a bake makes of Henyey-Greenstein's phase function.
+void scatter_forward(TestVolume& volume, double g);
+
+/// Denser toward the middle of 4 x 4 x 4 bricks, which scatter alike in all directions, once.
+TestVolume smoke_ball();
 
 /// No volumes yet, light on a cube map of n x n texels, 16-bit codes.
 formats::Volumes make_volumes(std::uint32_t n);

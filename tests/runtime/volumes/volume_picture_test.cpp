@@ -21,16 +21,10 @@ constexpr std::uint32_t kWidth = 40, kHeight = 30;
 
 // Smoke 1.6 m wide around the origin, at most 1 optical depth a metre.
 test::TestVolume smoke() {
-    test::TestVolume volume;
-    volume.extent = {4, 4, 4};
+    test::TestVolume volume = test::smoke_ball();
     volume.to_world = {0.05f, 0, 0, -0.8f, 0, 0.05f, 0, -0.8f, 0, 0, 0.05f, -0.8f};
-    volume.single_terms = 1;
     volume.sigma_t = {1, 2, 4};
     volume.albedo = {0.9f, 0.8f, 0.7f};
-    volume.density = [](float x, float y, float z) {
-        const float r2 = (x - 16) * (x - 16) + (y - 16) * (y - 16) + (z - 16) * (z - 16);
-        return std::max(0.0f, 1 - r2 / 200);
-    };
     return volume;
 }
 
@@ -44,16 +38,10 @@ Asset wall_at(float z) {
 }
 
 Camera camera() {
-    Camera at;
-    at.eye = {0, 0, 4};
-    at.width = kWidth;
-    at.height = kHeight;
-    at.fov_y = 30;
-    at.near_plane = 0.1f;
-    return at;
+    return {.eye = {0, 0, 4}, .fov_y = 30, .width = kWidth, .height = kHeight, .near_plane = 0.1f};
 }
 
-const formats::Environment kSky = test::make_lat_long(64, 32, [](Vec3 d) {
+const formats::Environment kSky = tests::lat_long_map(64, 32, [](Vec3 d) {
     return Rgb{1 + 0.5f * d.x, 1, 1 - 0.5f * d.y};
 });
 

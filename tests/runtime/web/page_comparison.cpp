@@ -1,7 +1,5 @@
 #include "tests/runtime/web/page_comparison.h"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -48,30 +46,9 @@ std::vector<ByteRange> ranges_of(const std::function<DisplayPicture(const Camera
     return ranges;
 }
 
-}  // namespace
-
-DisplayPicture render_on_cpu(const formats::AssetView& view, const formats::Environment& sky,
-                             const Camera& camera, const PageView& wanted) {
-    const Rotation rotation = rotation_about_y(wanted.turn * std::numbers::pi_v<float> / 180);
-    const LightVector light = project_environment(sky, view.cubemap_size, rotation);
-    const SpecularLight specular = make_specular_light(sky, specular_needs(view), rotation, 0);
-    const EmitterLight emitters{wanted.emitters, true};
-    SoftwareOptions options;
-    options.specular = &specular;
-    options.emitters = emitters;
-    options.lights = light;
-    const VolumeLight volumes = relight_volumes(view.volumes, light, {.emitters = emitters});
-    options.volumes = &volumes;
-    const auto picture = render_software(
-        view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0, emitters), sky,
-        rotation, camera, options);
-    EXPECT_TRUE(picture);
-    return tone_map(*picture, wanted.exposure);
-}
-
-void expect_same_pixels(const std::function<DisplayPicture(const Camera&)>& render,
-                        const Camera& camera, const std::vector<std::uint8_t>& page,
-                        std::size_t elsewhere) {
+// As expect_same_pixels.
+void expect_near(const std::function<DisplayPicture(const Camera&)>& render, const Camera& camera,
+                 const std::vector<std::uint8_t>& page, std::size_t elsewhere) {
     const DisplayPicture cpu = render(camera);
     ASSERT_EQ(cpu.rgba.size(), page.size());
     std::vector<std::size_t> far;
@@ -96,6 +73,44 @@ void expect_same_pixels(const std::function<DisplayPicture(const Camera&)>& rend
         }
     }
     EXPECT_LE(beyond_range.size(), page.size() / 4000);
+}
+
+}  // namespace
+
+DisplayPicture render_on_cpu(const formats::AssetView& view, const formats::Environment& sky,
+                             const Camera& camera, const PageView& wanted) {
+    const Rotation rotation = rotation_about_y(wanted.turn * std::numbers::pi_v<float> / 180);
+    const LightVector light = project_environment(sky, view.cubemap_size, rotation);
+    const SpecularLight specular = make_specular_light(sky, specular_needs(view), rotation, 0);
+    const EmitterLight emitters{wanted.emitters, true};
+    SoftwareOptions options;
+    options.specular = &specular;
+    options.emitters = emitters;
+    options.lights = light;
+    const VolumeLight volumes = relight_volumes(view.volumes, light, {.emitters = emitters});
+    options.volumes = &volumes;
+    const auto picture = render_software(
+        view, shade_for_picture(view, light, camera.eye, formats::TermSet::all, 0, emitters), sky,
+        rotation, camera, options);
+    EXPECT_TRUE(picture);
+    return tone_map(*picture, wanted.exposure);
+}
+
+std::vector<PageFile> page_of(const formats::Asset& asset, std::span<const PageLight> lights,
+                              const std::string& title) {
+    auto page = make_web_page(asset.view(), lights, title, "a.opal", 0);
+    EXPECT_TRUE(page);
+    return std::move(page).value();
+}
+
+BrowserOutcome expect_same_pixels(std::span<const PageFile> page, const std::string& address,
+                                  const Camera& camera,
+                                  const std::function<DisplayPicture(const Camera&)>& render,
+                                  std::size_t elsewhere) {
+    const BrowserOutcome shown = take_page_picture(page, address, camera.width, camera.height);
+    EXPECT_EQ(shown.console, "");
+    expect_near(render, camera, shown.rgba, elsewhere);
+    return shown;
 }
 
 }  // namespace opaline::test

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -10,8 +12,21 @@
 #include "formats/opal/environment.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/picture/tone_map.h"
+#include "tests/runtime/web/browser.h"
 
 namespace opaline::test {
+
+/// Skips where the tests were configured without a Chromium.
+class PagePicture : public testing::Test {
+  protected:
+    void SetUp() override {
+        if (!has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+    }
+};
+
+std::vector<runtime::PageFile> page_of(const formats::Asset& asset,
+                                       std::span<const runtime::PageLight> lights,
+                                       const std::string& title = "a");
 
 /// A view of the page, and what it is on the CPU.
 struct PageView {
@@ -26,14 +41,16 @@ runtime::DisplayPicture render_on_cpu(const formats::AssetView& view,
                                       const formats::Environment& sky,
                                       const runtime::Camera& camera, const PageView& wanted);
 
-/// The page's pixels and those that `render` has for the camera are the same within 2/255. Vertices
+/// Takes a picture of the page at an address, without complaints of its scripts. Its pixels and
+/// those that `render` has for the camera are the same within 2/255. Vertices
 /// snap to the grid of the browser's graphics, 1/16 sample, which moves samples beside edges
 /// across: pixels that change by more than 1/255 when the camera turns by one step of that grid lie
 /// within 2/255 of the range of these pictures, but for one in 1000. `elsewhere`: how many others
 /// may lie beyond 2/255.
-void expect_same_pixels(
+BrowserOutcome expect_same_pixels(
+    std::span<const runtime::PageFile> page, const std::string& address,
+    const runtime::Camera& camera,
     const std::function<runtime::DisplayPicture(const runtime::Camera&)>& render,
-    const runtime::Camera& camera, const std::vector<std::uint8_t>& page,
     std::size_t elsewhere = 0);
 
 }  // namespace opaline::test

@@ -6,16 +6,13 @@
 #include <numbers>
 
 #include "runtime/clouds/part_environments.h"
-#include "runtime/picture/software_renderer.h"
-#include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_bounds.h"
 #include "runtime/web/page_layer.h"
+#include "tests/runtime/picture/every_surface.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
-#include "tests/runtime/web/browser.h"
-#include "tests/runtime/web/every_surface.h"
 #include "tests/runtime/web/page_comparison.h"
 #include "tests/support/cloud_layers.h"
 
@@ -24,30 +21,26 @@ namespace {
 
 using formats::Rgb;
 using test::expect_same_pixels;
+using test::page_of;
+using test::PagePicture;
 using test::PageView;
 using test::render_on_cpu;
 
 formats::Environment white() {
-    return test::make_lat_long(2, 1, [](formats::Vec3) { return Rgb{1, 1, 1}; });
+    return tests::lat_long_map(2, 1, [](formats::Vec3) { return Rgb{1, 1, 1}; });
 }
 
 formats::Environment sky_with_sun() {
-    formats::Environment sky = test::make_lat_long(128, 64, test::two_lights);
+    formats::Environment sky = tests::lat_long_map(128, 64, test::two_lights);
     sky.discs = {{normalize(formats::Vec3{0.3f, 0.8f, 0.5f}), 0.0046f, {8000, 7000, 6000}}};
     return sky;
 }
 
-TEST(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLightAndDimmedEmitters) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLightAndDimmedEmitters) {
     const formats::Asset asset = test::make_every_surface();
     const formats::AssetView view = asset.view();
     const PageLight lights[] = {{"white", white()}, {"my <sky>", sky_with_sun()}};
-    const auto page = make_web_page(view, lights, "a \"title\" </script>", "a.opal", 0);
-    ASSERT_TRUE(page);
-    Camera camera;
-    camera.fov_y = 32;
-    camera.width = 120;
-    camera.height = 90;
+    const auto page = page_of(asset, lights, "a \"title\" </script>");
     const PageView views[] = {{"light=my+%3Csky%3E&eye=0.5,2,7&target=0,0.7,0&rotate=40", 40},
                               {"light=my+%3Csky%3E&eye=-3,3,-6&target=0,0.7,0&rotate=-130&exposure="
                                "-0.7&emitter=b%3D0,0,0&"
@@ -57,44 +50,41 @@ TEST(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLightAndDimmedEmitters) 
                                {{2, 1, 0.5f}, {0, 0, 0}}}};
     for (const PageView& wanted : views) {
         SCOPED_TRACE(wanted.address);
-        camera.eye = wanted.turn > 0 ? formats::Vec3{0.5f, 2, 7} : formats::Vec3{-3, 3, -6};
-        camera.target = {0, 0.7f, 0};
-        camera.near_plane = near_plane_for(view, camera.eye);
-        const auto shown = test::take_page_picture(*page, wanted.address, 120, 90);
-        EXPECT_EQ(shown.console, "");
+        const formats::Vec3 eye =
+            wanted.turn > 0 ? formats::Vec3{0.5f, 2, 7} : formats::Vec3{-3, 3, -6};
+        const auto shown =
+            expect_same_pixels(page, wanted.address,
+                               {.eye = eye,
+                                .target = {0, 0.7f, 0},
+                                .fov_y = 32,
+                                .width = 120,
+                                .height = 90,
+                                .near_plane = near_plane_for(view, eye)},
+                               [&](const Camera& moved) {
+                                   return render_on_cpu(view, lights[1].environment, moved, wanted);
+                               });
         EXPECT_EQ(shown.title, "a \"title\" &lt;/script&gt;");
-        expect_same_pixels(
-            [&](const Camera& moved) {
-                return render_on_cpu(view, lights[1].environment, moved, wanted);
-            },
-            camera, shown.rgba);
     }
 }
 
 // A map of photographs: the sun stands in a few of its pixels.
 formats::Environment sky_with_sun_in_the_map() {
     const formats::Vec3 sun = normalize(formats::Vec3{0.3f, 0.8f, 0.5f});
-    return test::make_lat_long(1024, 512, [sun](formats::Vec3 d) {
+    return tests::lat_long_map(1024, 512, [sun](formats::Vec3 d) {
         return test::two_lights(d) + (dot(d, sun) > 0.9999f ? 5000.0f : 0.0f) * Rgb{1, 0.9f, 0.8f};
     });
 }
 
-TEST(PagePicture, DefaultViewUnderATurnedSunInTheMapIsTheOneOfPictures) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, DefaultViewUnderATurnedSunInTheMapIsTheOneOfPictures) {
     formats::Asset asset = test::make_asset(8, 16);
     test::add_primitive(asset, test::make_sphere({3, 1, -2}, 0.8f, 24, 16), {.bands = 3});
     const PageLight lights[] = {{"sky", sky_with_sun_in_the_map()}};
-    const auto page = make_web_page(asset.view(), lights, "ball", "a.opal", 0);
-    ASSERT_TRUE(page);
     // The view is framed for the window, which is wider than high, as this picture is.
-    const auto shown = test::take_page_picture(*page, "rotate=63", 160, 120);
-    EXPECT_EQ(shown.console, "");
-    const Camera camera = frame_asset(asset.view(), 32, 160, 120);
     expect_same_pixels(
+        page_of(asset, lights), "rotate=63", frame_asset(asset.view(), 32, 160, 120),
         [&](const Camera& moved) {
             return render_on_cpu(asset.view(), lights[0].environment, moved, {{}, 63});
-        },
-        camera, shown.rgba);
+        });
 }
 
 // Bumps with holes, in three frames, over a ground of squares; wind moves them. `with_bodies`:
@@ -121,27 +111,24 @@ formats::Asset make_cloudy_scene(bool with_bodies) {
     record.frames = 3;
     record.frame_seconds = 40;
     record.flags |= formats::LayerRecord::kLoop;
-    for (std::size_t i = 0; i < asset.clouds.ground.size(); ++i) {
-        const auto code = static_cast<std::uint8_t>(i % 2 == 0 ? 150 : 110);
-        asset.clouds.ground[i] = {code, 120, static_cast<std::uint8_t>(255 - code), 255};
-    }
+    test::paint_squares(asset.clouds, 150, 110);
     if (!with_bodies) return asset;
     test::add_primitive(asset,
                         test::make_sheet({-200, 700, -900}, {900, 100, 0}, {0, 900, -300}, 2, 2),
                         {.bands = 1, .details = 20});
     asset.volumes = test::make_volumes(8);
-    test::TestVolume smoke;
-    smoke.extent = {4, 4, 4};
-    smoke.single_terms = 1;
+    test::TestVolume smoke = test::smoke_ball();
     smoke.to_world = {20, 0, 0, -70, 0, 20, 0, 800, 0, 0, 20, -720};
     smoke.sigma_t = {0.01f, 0.015f, 0.02f};
     smoke.albedo = {0.9f, 0.6f, 0.3f};
-    smoke.density = [](float x, float y, float z) {
-        const float r2 = (x - 16) * (x - 16) + (y - 16) * (y - 16) + (z - 16) * (z - 16);
-        return std::max(0.0f, 1 - r2 / 200);
-    };
     test::add_volume(asset.volumes, smoke);
     return asset;
+}
+
+formats::Environment sky_above_clouds() {
+    formats::Environment sky = tests::lat_long_map(64, 32, test::two_lights);
+    sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
+    return sky;
 }
 
 // What turns and moves in the pages of cloud layers.
@@ -184,37 +171,29 @@ DisplayPicture render_cloudy_on_cpu(const formats::AssetView& view, const format
     return tone_map(*picture, shown.exposure);
 }
 
-TEST(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderTurnedLightLater) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
-    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
-    sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
+TEST_F(PagePicture, ACloudLayerWithItsGroundAndWhatStandsInItLooksAsOnTheCpuUnderTurnedLightLater) {
+    const formats::Environment sky = sky_above_clouds();
     const PageLight lights[] = {{"sky", sky}};
     for (const bool with_bodies : {false, true}) {
         SCOPED_TRACE(with_bodies);
         const formats::Asset asset = make_cloudy_scene(with_bodies);
-        const auto page = make_web_page(asset.view(), lights, "clouds", "a.opal", 0);
-        ASSERT_TRUE(page);
-        Camera camera;
-        camera.eye = with_bodies ? formats::Vec3{0, 3000, 600} : formats::Vec3{0, 2, 0};
-        camera.target =
-            with_bodies ? formats::Vec3{100, 1000, -900} : formats::Vec3{100, 600, -900};
-        camera.fov_y = 40;
-        camera.width = 80;
-        camera.height = 60;
-        camera.near_plane = near_plane_for(asset.view(), camera.eye);
-        const auto shown = test::take_page_picture(
-            *page,
+        const formats::Vec3 eye =
+            with_bodies ? formats::Vec3{0, 3000, 600} : formats::Vec3{0, 2, 0};
+        const CloudView wanted = with_bodies ? CloudView{50, -0.5f, -310} : CloudView{-77, -2, 130};
+        expect_same_pixels(
+            page_of(asset, lights),
             with_bodies
                 ? "eye=0,3000,600&target=100,1000,-900&fov=40&exposure=-0.5&rotate=50&time=-310"
                 : "eye=0,2,0&target=100,600,-900&fov=40&exposure=-2&rotate=-77&time=130",
-            80, 60);
-        EXPECT_EQ(shown.console, "");
-        const CloudView wanted = with_bodies ? CloudView{50, -0.5f, -310} : CloudView{-77, -2, 130};
-        expect_same_pixels(
+            {.eye = eye,
+             .target = {100, with_bodies ? 1000.0f : 600.0f, -900},
+             .width = 80,
+             .height = 60,
+             .near_plane = near_plane_for(asset.view(), eye)},
             [&](const Camera& moved) {
                 return render_cloudy_on_cpu(asset.view(), sky, moved, wanted, with_bodies ? 2 : 0);
             },
-            camera, shown.rgba, with_bodies ? 1 : 0);
+            with_bodies ? 1 : 0);
     }
 }
 
@@ -242,39 +221,28 @@ formats::Asset make_mirroring_scene() {
     return asset;
 }
 
-TEST(PagePicture, BodiesMirrorCloudsAsOnTheCpuUnderTurnedLightLater) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, BodiesMirrorCloudsAsOnTheCpuUnderTurnedLightLater) {
     const formats::Asset asset = make_mirroring_scene();
-    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
-    sky.discs.push_back({normalize(formats::Vec3{-0.5f, 0.6f, -0.5f}), 0.01f, {4e3f, 3e3f, 1e3f}});
+    const formats::Environment sky = sky_above_clouds();
     const PageLight lights[] = {{"sky", sky}};
-    const auto page = make_web_page(asset.view(), lights, "clouds", "a.opal", 0);
-    ASSERT_TRUE(page);
-    Camera camera;
-    camera.eye = {0, 3000, 600};
-    camera.target = {100, 1200, -600};
-    camera.fov_y = 40;
-    camera.width = 60;
-    camera.height = 45;
-    camera.near_plane = near_plane_for(asset.view(), camera.eye);
-    const auto shown = test::take_page_picture(
-        *page, "eye=0,3000,600&target=100,1200,-600&fov=40&exposure=-0.5&rotate=50&time=60", 60,
-        45);
-    EXPECT_EQ(shown.console, "");
+    const formats::Vec3 eye{0, 3000, 600};
     expect_same_pixels(
+        page_of(asset, lights),
+        "eye=0,3000,600&target=100,1200,-600&fov=40&exposure=-0.5&rotate=50&time=60",
+        {.eye = eye,
+         .target = {100, 1200, -600},
+         .width = 60,
+         .height = 45,
+         .near_plane = near_plane_for(asset.view(), eye)},
         [&](const Camera& moved) {
             return render_cloudy_on_cpu(asset.view(), sky, moved, {50, -0.5f, 60}, 3);
-        },
-        camera, shown.rgba);
+        });
 }
 
-TEST(PagePicture, ControlsAndTheAddressFollowEachOther) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, ControlsAndTheAddressFollowEachOther) {
     const formats::Asset asset = test::make_every_surface();
     const PageLight lights[] = {{"white", white()}, {"black", {}}};
-    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
-    ASSERT_TRUE(page);
-    const auto shown = test::run_on_page(*page, R"js(
+    const auto shown = test::run_on_page(page_of(asset, lights), R"js(
 const at = id => document.getElementById(id), canvas = at("canvas");
 const wait = () => new Promise(resolve => setTimeout(resolve, 500));
 const set = (id, value, type) => { at(id).value = value; at(id).dispatchEvent(new Event(type)); };
@@ -297,16 +265,14 @@ opaline.page.ready.then(async () => {
 });
 )js");
     EXPECT_EQ(shown.console, "");
-    EXPECT_EQ(
-        shown.title.substr(0, shown.title.find("&amp;target")),
-        "1 × 2 false #light=white&amp;rotate=45&amp;azimuth=13&amp;elevation=23&amp;"
-        "distance=3");
+    EXPECT_EQ(shown.title.substr(0, shown.title.find("&amp;target")),
+              "1 × 2 false #light=white&amp;rotate=45&amp;azimuth=13&amp;elevation=23&amp;"
+              "distance=3");
     EXPECT_NE(shown.title.find("emitter=a=2,1,0.5&amp;emitter=b=0,0,0"), std::string::npos)
         << shown.title;
 }
 
-TEST(PagePicture, ASliderMovesTheCloudsAndTheAddressKeepsTheirTime) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, ASliderMovesTheCloudsAndTheAddressKeepsTheirTime) {
     const PageLight lights[] = {{"white", white()}};
     const formats::Asset cloudy = make_cloudy_scene(false);
     const std::string script = R"js(
@@ -319,20 +285,15 @@ opaline.page.ready.then(async () => {
       new URLSearchParams(location.hash.slice(1)).get("time");
 });
 )js";
-    const auto page = make_web_page(cloudy.view(), lights, "a", "a.opal", 0);
-    ASSERT_TRUE(page);
-    const auto shown = test::run_on_page(*page, script);
+    const auto shown = test::run_on_page(page_of(cloudy, lights), script);
     EXPECT_EQ(shown.console, "");
     EXPECT_EQ(shown.title, "false 120 50 s 50");  // three frames of 40 s, over and over
 }
 
-TEST(PagePicture, WithoutWebGlThePageSaysSo) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, WithoutWebGlThePageSaysSo) {
     const formats::Asset asset = test::make_every_surface();
     const PageLight lights[] = {{"white", white()}};
-    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
-    ASSERT_TRUE(page);
-    const auto shown = test::open_page_without_webgl(*page);
+    const auto shown = test::open_page_without_webgl(page_of(asset, lights));
     EXPECT_NE(shown.message.find("has no WebGL 2"), std::string::npos) << shown.message;
 }
 

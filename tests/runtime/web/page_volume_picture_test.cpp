@@ -7,14 +7,14 @@
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/glow_support.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
-#include "tests/runtime/web/browser.h"
 #include "tests/runtime/web/page_comparison.h"
-#include "tests/support/cut_phase.h"
 
 namespace opaline::runtime {
 namespace {
 
 using test::expect_same_pixels;
+using test::page_of;
+using test::PagePicture;
 using test::PageView;
 using test::render_on_cpu;
 
@@ -30,9 +30,7 @@ test::TestVolume make_smoke(std::uint32_t single, std::uint32_t multiple, std::u
     smoke.single_terms = single;
     smoke.multiple_terms = multiple;
     smoke.bands = bands;
-    const tests::CutPhase phase = tests::make_cut_phase(0.7);
-    smoke.moment = phase.moments();
-    smoke.phase = phase;
+    test::scatter_forward(smoke, 0.7);
     smoke.density = [](float x, float y, float z) {
         return std::max(0.0f, 1 + 0.03f * x - (x * x + y * y + z * z) / 220);
     };
@@ -50,9 +48,18 @@ test::TestVolume make_smoke(std::uint32_t single, std::uint32_t multiple, std::u
     return smoke;
 }
 
+Camera camera_at_smoke(const formats::Asset& asset, std::uint32_t width, std::uint32_t height) {
+    const formats::Vec3 eye{0.7f, 1, 4};
+    return {.eye = eye,
+            .target = {0, 0.7f, 0},
+            .fov_y = 32,
+            .width = width,
+            .height = height,
+            .near_plane = near_plane_for(asset.view(), eye)};
+}
+
 // Two volumes that overlap, one that scatters a sun forward; a sheet cuts them.
-TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
     formats::Asset asset = test::make_asset(8, 16);
     asset.volumes = test::make_volumes(8);
     test::add_volume(asset.volumes, make_smoke(25, 4, 1));
@@ -61,26 +68,13 @@ TEST(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
     test::add_volume(asset.volumes, other);
     test::add_primitive(
         asset, test::make_sheet({0, 0.6f, 0.1f}, {0.5f, 0, 0.4f}, {0, 0.4f, 0.2f}, 2, 1), {});
-    formats::Environment sky = test::make_lat_long(64, 32, test::two_lights);
+    formats::Environment sky = tests::lat_long_map(64, 32, test::two_lights);
     sky.discs.push_back({normalize(formats::Vec3{-0.4f, 0.2f, -1}), 0.01f, {4e4f, 3e4f, 1e4f}});
     const PageLight lights[] = {{"sky", sky}};
-    const auto page = make_web_page(asset.view(), lights, "smoke", "a.opal", 0);
-    ASSERT_TRUE(page);
-    Camera camera;
-    camera.eye = {0.7f, 1, 4};
-    camera.target = {0, 0.7f, 0};
-    camera.fov_y = 32;
-    camera.width = 80;
-    camera.height = 60;
-    camera.near_plane = near_plane_for(asset.view(), camera.eye);
-    const auto shown =
-        test::take_page_picture(*page, "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2", 80, 60);
-    EXPECT_EQ(shown.console, "");
-    expect_same_pixels(
-        [&](const Camera& moved) {
-            return render_on_cpu(asset.view(), sky, moved, {{}, 20, -2});
-        },
-        camera, shown.rgba);
+    expect_same_pixels(page_of(asset, lights), "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2",
+                       camera_at_smoke(asset, 80, 60), [&](const Camera& moved) {
+                           return render_on_cpu(asset.view(), sky, moved, {{}, 20, -2});
+                       });
 }
 
 // Fire of one brick of eight in a volume that is dark elsewhere, beside dark smoke.
@@ -104,29 +98,18 @@ formats::Asset make_fire() {
     return asset;
 }
 
-TEST(PagePicture, FireShinesAndLightsItsSmokeAsOnTheCpuInItsSlidersColour) {
-    if (!test::has_browser()) GTEST_SKIP() << "no Chromium was found: the page was not looked at";
+TEST_F(PagePicture, FireShinesAndLightsItsSmokeAsOnTheCpuInItsSlidersColour) {
     const formats::Asset asset = make_fire();
-    const PageLight lights[] = {{"sky", test::make_lat_long(64, 32, test::two_lights)}};
-    const auto page = make_web_page(asset.view(), lights, "fire", "a.opal", 0);
-    ASSERT_TRUE(page);
-    Camera camera;
-    camera.eye = {0.7f, 1, 4};
-    camera.target = {0, 0.7f, 0};
-    camera.fov_y = 32;
-    camera.width = 64;
-    camera.height = 48;
-    camera.near_plane = near_plane_for(asset.view(), camera.eye);
+    const PageLight lights[] = {{"sky", tests::lat_long_map(64, 32, test::two_lights)}};
     PageView wanted{"eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2&emitter=fire%3D0.5,1,3",
                     20,
                     -2,
                     {{1, 1, 1}, {0.5f, 1, 3}}};
-    const auto shown = test::take_page_picture(*page, wanted.address, 64, 48);
-    EXPECT_EQ(shown.console, "");
     const auto cpu = [&](const Camera& moved) {
         return render_on_cpu(asset.view(), lights[0].environment, moved, wanted);
     };
-    expect_same_pixels(cpu, camera, shown.rgba);
+    const Camera camera = camera_at_smoke(asset, 64, 48);
+    expect_same_pixels(page_of(asset, lights), wanted.address, camera, cpu);
     const DisplayPicture lit = cpu(camera);
     wanted.emitters[1] = {};
     const DisplayPicture dark = cpu(camera);

@@ -1,7 +1,7 @@
 // The files of a page.
 #include "runtime/web/web_page.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -93,21 +93,25 @@ TEST(DataScript, LiteralsEndNeitherTheirStringNorTheirScript) {
     EXPECT_EQ(script_literal("Bäume"), "\"Bäume\"");
 }
 
-TEST(WebPage, AssetsWithNothingToSeeAreRefused) {
+TEST(WebPage, AssetsThatAPageDoesNotShowAreRefused) {
+    const auto fault_of = [](const formats::Asset& asset) {
+        const PageLight lights[] = {{"white", {}}};
+        const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
+        EXPECT_FALSE(page);
+        EXPECT_EQ(page.error().kind, formats::ErrorKind::bad_input);
+        return page.error().diagnostics[0].fault;
+    };
     formats::Asset asset = test::make_asset(8, 8);
-    const PageLight lights[] = {{"white", {}}};
-    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
-    ASSERT_FALSE(page);
-    EXPECT_EQ(page.error().kind, formats::ErrorKind::bad_input);
-    EXPECT_NE(
-        page.error().diagnostics[0].fault.find("neither surfaces nor volumes nor a cloud layer"),
-        std::string::npos);
+    EXPECT_THAT(fault_of(asset),
+                testing::HasSubstr("neither surfaces nor volumes nor a cloud layer"));
+    asset.volumes.records.resize(kMostPageVolumes + 1);
+    EXPECT_THAT(fault_of(asset), testing::HasSubstr("a page draws at most 4"));
 }
 
 TEST(WebPage, FilesAreAlikeForAnyNumberOfThreadsAndKnownAsThoseOfAPage) {
     formats::Asset asset = test::make_asset(8, 8);
     test::add_primitive(asset, test::make_sphere({0, 0, 0}, 1, 8, 6), {.bands = 3});
-    const PageLight lights[] = {{"sky", test::make_lat_long(64, 32, test::two_lights)},
+    const PageLight lights[] = {{"sky", tests::lat_long_map(64, 32, test::two_lights)},
                                 {"none", {}}};
     const auto one = make_web_page(asset.view(), lights, "a", "a.opal", 1);
     const auto many = make_web_page(asset.view(), lights, "a", "a.opal", 7);
@@ -126,7 +130,7 @@ TEST(WebPage, FilesAreAlikeForAnyNumberOfThreadsAndKnownAsThoseOfAPage) {
 TEST(DividedLight, FluxOfASunInTheMapIsKept) {
     const formats::Vec3 sun = normalize(formats::Vec3{0.3f, 0.8f, 0.5f});
     const double radiance = 5000;
-    const formats::Environment map = test::make_lat_long(1024, 512, [&](formats::Vec3 d) {
+    const formats::Environment map = tests::lat_long_map(1024, 512, [&](formats::Vec3 d) {
         return dot(d, sun) > 0.9999f ? formats::Rgb{5000, 5000, 5000} : formats::Rgb{1, 1, 1};
     });
     const std::vector<double> edges = row_edges(map);
@@ -150,15 +154,6 @@ TEST(DividedLight, FluxOfASunInTheMapIsKept) {
     }
     EXPECT_GT(points, 0.9 * of_sun);
     EXPECT_NEAR(points + cube, of_sun + 4 * std::numbers::pi, 2e-3 * of_sun);
-}
-
-TEST(WebPage, MoreVolumesThanAPageDrawsAreRefused) {
-    formats::Asset asset = test::make_asset(8, 8);
-    asset.volumes.records.resize(kMostPageVolumes + 1);
-    const PageLight lights[] = {{"none", {}}};
-    const auto page = make_web_page(asset.view(), lights, "a", "a.opal", 0);
-    ASSERT_FALSE(page);
-    EXPECT_NE(page.error().diagnostics[0].fault.find("a page draws at most 4"), std::string::npos);
 }
 
 }  // namespace

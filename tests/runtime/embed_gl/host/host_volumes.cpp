@@ -41,11 +41,10 @@ HostPicture make_volume_picture(HostApi api, const opaline_gl_volumes& volumes) 
 
 std::vector<opaline_march_result> march_rays(const opaline_asset* asset,
                                              const opaline_volume_light* light,
-                                             const std::vector<HostRay>& rays,
-                                             const float (&eye)[3]) {
+                                             const std::vector<HostRay>& rays, formats::Vec3 eye) {
     std::vector<opaline_march_ray> march;
     for (const HostRay& ray : rays) {
-        march.push_back({{eye[0] + ray.from[0], eye[1] + ray.from[1], eye[2] + ray.from[2]},
+        march.push_back({{eye.x + ray.from[0], eye.y + ray.from[1], eye.z + ray.from[2]},
                          {ray.direction[0], ray.direction[1], ray.direction[2]},
                          ray.begin,
                          ray.end});
@@ -61,10 +60,10 @@ std::vector<opaline_march_result> march_rays(const opaline_asset* asset,
 std::vector<opaline_sample_result> sample_points(const opaline_asset* asset,
                                                  const opaline_volume_light* light,
                                                  const std::vector<HostRay>& rays,
-                                                 const float (&eye)[3]) {
+                                                 formats::Vec3 eye) {
     std::vector<opaline_sample_point> points;
     for (const HostRay& ray : rays) {
-        points.push_back({{eye[0] + ray.from[0], eye[1] + ray.from[1], eye[2] + ray.from[2]},
+        points.push_back({{eye.x + ray.from[0], eye.y + ray.from[1], eye.z + ray.from[2]},
                           {ray.direction[0], ray.direction[1], ray.direction[2]}});
     }
     std::vector<opaline_sample_result> found(points.size());

@@ -1,25 +1,13 @@
 #include "tests/runtime/embed_gl/host/loaded_file.h"
 
 #include <cstddef>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <memory>
-#include <string>
 
 #include "tests/runtime/embed_gl/host/host_context.h"
 
 namespace opaline::test {
 
 LoadedFile::LoadedFile(const std::filesystem::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    const std::string content{std::istreambuf_iterator<char>(in), {}};
-    storage_.resize(content.size() + 64);
-    void* bytes = storage_.data();
-    std::size_t room = storage_.size();
-    std::align(64, content.size(), bytes, room);
-    std::memcpy(bytes, content.data(), content.size());
-    require(opaline_asset_load(bytes, content.size(), &asset_) == OPALINE_OK, opaline_last_error());
+    require(opaline_asset_load_path(path.c_str(), &asset_) == OPALINE_OK, opaline_last_error());
     require(opaline_light_create(asset_, &light_) == OPALINE_OK, opaline_last_error());
 }
 

@@ -8,7 +8,7 @@
 
 namespace opaline::test {
 
-/// A file loaded as a host does: through bytes and opaline.h. Throws as `require`.
+/// A file loaded as a host does: by opaline.h. Throws as `require`.
 class LoadedFile {
   public:
     explicit LoadedFile(const std::filesystem::path& path);
@@ -24,7 +24,6 @@ class LoadedFile {
     std::vector<float> expected(const float* eye) const;
 
   private:
-    std::vector<char> storage_;
     opaline_asset* asset_ = nullptr;
     opaline_light* light_ = nullptr;
 };

@@ -1,4 +1,4 @@
-#include "tests/runtime/web/every_surface.h"
+#include "tests/runtime/picture/every_surface.h"
 
 #include <cmath>
 
