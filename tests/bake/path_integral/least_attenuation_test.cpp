@@ -43,10 +43,5 @@ TEST(LeastAttenuation, DarkPlacesOnTheWayAreAvoided) {
     EXPECT_EQ(path.ell_total, 1);
 }
 
-TEST(LeastAttenuation, PrintedCurvatureIsHalfOfThatOfANarrowGaussian) {
-    // p ~ exp(-angle^2 / w^2): alpha = 1 / w^2, and 1 - g = w^2 / 2 but for higher orders.
-    EXPECT_NEAR(printed_curvature(1 - 0.01 * 0.01 / 2) * 0.01 * 0.01, 0.5, 1e-6);
-}
-
 }  // namespace
 }  // namespace opaline::bake

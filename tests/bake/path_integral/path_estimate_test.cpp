@@ -121,25 +121,6 @@ TEST(PathEstimate, OfAnyDensityIsFiniteAndNotNegative) {
     }
 }
 
-TEST(PathEstimate, WithoutAbsorptionEndsWhereThePathLeaves) {
-    const ZonalTable table = table_of(PathKernel::source, 0.9);
-    const double value = estimate(table, {dvec3(0), {0, 0, 1}, {0, 0, 1}}, tests::Ball{1e4, 1, 1},
-                                  {.box = tests::cube(1), .step = 0.01});
-    EXPECT_TRUE(std::isfinite(value));
-    EXPECT_GT(value, 0);
-}
-
-TEST(PathEstimate, OfSeveralLengthsIsTheirMean) {
-    const PathQuery query{{0.1, -0.7, 0}, kView, {0, 0, 1}};
-    const ZonalTable table = table_of(PathKernel::source, 0.75);
-    const double lengths[] = {0.5, 1, 2};
-    double sum = 0;
-    for (const double& length : lengths) {
-        sum += estimate(table, query, kBlob, kLimits, {&length, 1});
-    }
-    EXPECT_NEAR(estimate(table, query, kBlob, kLimits, lengths) / (sum / 3), 1, 1e-14);
-}
-
 // Without absorption everything under light of radiance 1 has radiance 1. Path integration keeps
 // that to 15 %.
 TEST(PathEstimate, BallInAWhiteFurnaceIsWhiteWithin15Percent) {
