@@ -44,6 +44,15 @@ TEST(AxisFrame, CarriedDirectionsTurnWithTheAxisAndDoNotSpin) {
     EXPECT_LT(to_axis, 1e-12);
 }
 
+// Hard case: near its reference axis a frame whose T is perpendicular to one spins without bound.
+TEST(AxisFrame, NearAReferenceAxisNothingDiverges) {
+    for (const double angle : {1e-2, 1e-4, 1e-6}) {
+        const glm::dvec3 R(std::sin(angle), 0, std::cos(angle)), dR(0, 0.1, 0);
+        const glm::dvec3 D = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
+        EXPECT_LT(glm::length(carry_with_axis(R, dR, D)), 0.1 + 1e-12);
+    }
+}
+
 // Hard case: the recipe for T and B jumps at n.z = 0; carried directions are continuous.
 TEST(AxisFrame, CarriedDirectionsDoNotJumpWhereTheFrameDoes) {
     const glm::dvec3 dR(0, 0.2, 0.1), D = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));

@@ -17,11 +17,12 @@ using glm::dvec3;
 const dvec3 kAlong = glm::normalize(dvec3(2, 1, -1.3)), kAside = glm::normalize(dvec3(1, -2, 0));
 
 // The blob on a grid of voxels of size * `voxel`, out to 6 sizes. Voxels stand at +- 1/2, 3/2, ...
-formats::SparseGrid<float> blob_grid(const tests::Blob& blob, double voxel) {
+formats::SparseGrid<float> blob_grid(const tests::Blob& blob, double voxel,
+                                     const glm::dmat4& shear = glm::dmat4(1)) {
     const double edge = voxel * blob.size;
     const int bricks = static_cast<int>(std::ceil(6 / voxel / 8));
     const glm::dmat4 to_scene =
-        glm::scale(glm::dmat4(1), dvec3(edge)) * glm::translate(glm::dmat4(1), dvec3(0.5));
+        shear * glm::scale(glm::dmat4(1), dvec3(edge)) * glm::translate(glm::dmat4(1), dvec3(0.5));
     return tests::sample_grid([&](dvec3 x) { return blob.extinction(x); }, glm::ivec3(-bricks),
                               glm::ivec3(2 * bricks), to_scene);
 }
@@ -49,6 +50,33 @@ TEST(ProbeDepth, BlobOnAGridIsAsDeepAsTheTableSaysButForTheSquareOfItsVoxels) {
             EXPECT_NEAR(depth / row.value() - 1, second_order, 0.2 * std::pow(voxel, 4) + 2e-5)
                 << row.id() << ' ' << voxel;
         }
+    }
+}
+
+TEST(ProbeDepth, ShearedGridOfTheSameBlobIsAsDeep) {
+    const tests::Blob blob{4, 0.5};
+    glm::dmat4 shear(1);
+    shear[0] = {0.9, 0, 0.1, 0};
+    shear[1] = {0.3, 1.2, 0, 0};
+    const double exact = depth_through(blob_grid(blob, 0.125), 0.4, 0.5, 0.03);
+    EXPECT_NEAR(depth_through(blob_grid(blob, 0.125, shear), 0.4, 0.5, 0.03) / exact, 1, 1e-3);
+}
+
+TEST(ProbeDepth, IsTheSameFromTheOtherSideOfAMirror) {
+    const formats::SparseGrid<float> grid = blob_grid({4, 0.5}, 0.5);
+    const GridMedium medium(grid, {0.7, 0.3});
+    const auto extinction = [&](dvec3 x) { return medium(x).extinction(); };
+    VolumeBox box = grid_box(grid);
+    box.low = glm::max(box.low, -box.high);
+    box.high = -box.low;
+    const dvec3 start(box.low.x, 0.3, -0.2), along = glm::normalize(dvec3(0.2, 0, 0.1) - start);
+    const double depth = probe_depth(extinction, box, start, along, 0.05);
+    EXPECT_GT(depth, 1);
+    for (int axis = 0; axis < 3; ++axis) {
+        dvec3 mirror(1);
+        mirror[axis] = -1;
+        EXPECT_NEAR(probe_depth(extinction, box, mirror * start, mirror * along, 0.05) / depth, 1,
+                    1e-6);
     }
 }
 
