@@ -38,8 +38,8 @@ TEST(LeastAttenuation, DarkPlacesOnTheWayAreAvoided) {
     const QuasiPath path =
         least_attenuated_path(dvec3(0), turn, 1, kLengths, printed_curvature(0.5), medium,
                               {.box = tests::cube(10), .step = 0.01});
-    EXPECT_GT(arc_end(turn, 2, 1).z, 0.8);
-    EXPECT_LT(arc_end(turn, 1, 1).z, 0.8);
+    EXPECT_GT(tests::arc_end(turn, 2, 1).z, 0.8);
+    EXPECT_LT(tests::arc_end(turn, 1, 1).z, 0.8);
     EXPECT_EQ(path.ell_total, 1);
 }
 

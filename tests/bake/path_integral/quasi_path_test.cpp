@@ -61,7 +61,7 @@ TEST(QuasiPath, InAHomogeneousMediumIsAnArcAndThenStraight) {
     const double b = 3, total = 2, angle = pi / 3;
     const Turn turn = turn_between({0, 0, 1}, {std::sin(angle), 0, std::cos(angle)});
     const dvec3 centre = total / (b * angle) * turn.aside;
-    const dvec3 end = arc_end(turn, total, b);
+    const dvec3 end = tests::arc_end(turn, total, b);
     double first_straight = 0;
     const PathEnd last = march_quasi_path(
         {dvec3(0), turn, total}, homogeneous(b),
