@@ -9,6 +9,7 @@
 #include "bake/base/frame.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -38,13 +39,8 @@ bool is_in_crease(const EmitterCheck& check, const Receiver& receiver, float nea
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         const float turn = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / 8;
         const float slope = i < 8 ? 0.2f : 1.0f;
-        const glm::vec3 direction =
-            glm::normalize(frame.to_world({std::cos(turn), std::sin(turn), slope}));
-        packet.dir_x[i] = direction.x;
-        packet.dir_y[i] = direction.y;
-        packet.dir_z[i] = direction.z;
-        packet.tfar[i] = near;
-        lanes[i] = -1;
+        set_lane(packet, lanes, i,
+                 glm::normalize(frame.to_world({std::cos(turn), std::sin(turn), slope})), near);
     }
     check.rays.occluded(lanes, packet);
     return std::ranges::any_of(packet.tfar, [](float t) { return t < 0; });

@@ -4,29 +4,18 @@
 #include <cmath>
 #include <vector>
 
+#include "bake/emitters/point_box.h"
+#include "bake/emitters/spread_points.h"
+#include "bake/transport/packet_lane.h"
+
 namespace opaline::bake {
 namespace {
 
 // Irradiance averages over many steps.
 constexpr float kStep = 1;  // voxels
 
-/// The box of the scene around some points.
-struct PointBox {
-    glm::dvec3 low{1e300}, high{-1e300};
-
-    void include(const glm::dvec3& point) {
-        low = glm::min(low, point);
-        high = glm::max(high, point);
-    }
-    Ball ball() const { return {0.5 * (low + high), 0.5 * glm::length(high - low)}; }
-};
-
 formats::Vec3 to_vec3(const glm::dvec3& v) {
     return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-double turn_fraction(double x) {
-    return x - std::floor(x);
 }
 
 // Sixteen rays from a receiver and their weights.
@@ -89,17 +78,18 @@ GlowLight make_glow_light(const formats::Scene& scene, std::uint32_t volume,
     for (const glm::dvec3& corner : own.emission.corners()) {
         box.include(glm::dvec3(placed * glm::dvec4(corner, 1)));
     }
-    result.own = box.ball();
+    result.own = {box.centre(), box.radius()};
     const bool is_scattered =
         std::ranges::any_of(volumes.glow.record, [&](const formats::GlowRecord& record) {
             return record.emitter == glow && record.terms > 0;
         });
     for (const formats::Volume& other : scene.volumes) {
         if (!is_scattered || other.density.empty()) continue;
-        for (const glm::dvec3& corner : other.density.corners())
+        for (const glm::dvec3& corner : other.density.corners()) {
             box.include(corner);
+        }
     }
-    result.all = box.ball();
+    result.all = {box.centre(), box.radius()};
     return result;
 }
 
@@ -116,19 +106,14 @@ glm::dvec3 glow_irradiance(const GlowLight& glow, const RayScene& surfaces,
     glm::dvec3 sum(0);
     for (std::size_t w = 0; w < ways.size(); ++w) {
         for (std::uint32_t i = 0; i < count[w]; ++i) {
-            const glm::dvec3 direction = ways[w].sample(
-                turn_fraction(static_cast<double>(turn[0]) + i * 0.7548776662466927),
-                turn_fraction(static_cast<double>(turn[1]) + i * 0.5698402909980532));
+            const glm::dvec2 at = spread_point({turn[0], turn[1]}, i);
+            const glm::dvec3 direction = ways[w].sample(at.x, at.y);
             const double cosine = glm::dot(direction, normal);
             const double density =
                 count[0] * ways[0].pdf(direction) + count[1] * ways[1].pdf(direction);
             if (!(cosine > 0) || !(density > 0)) continue;
             const std::uint32_t lane = block.count++;
-            block.packet.dir_x[lane] = static_cast<float>(direction.x);
-            block.packet.dir_y[lane] = static_cast<float>(direction.y);
-            block.packet.dir_z[lane] = static_cast<float>(direction.z);
-            block.packet.tfar[lane] = std::numeric_limits<float>::infinity();
-            block.lanes[lane] = -1;
+            set_lane(block.packet, block.lanes, lane, glm::vec3(direction));
             block.weight[lane] = cosine / density;
             if (block.count == RayPacket::kSize) {
                 sum += march_block(glow, surfaces, receiver, block, rays);

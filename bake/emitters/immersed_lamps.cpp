@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -26,10 +27,7 @@ bool is_inside_medium(const formats::Scene& scene, const RayScene& rays, const g
     std::size_t started = 0, backs = 0;
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         const glm::vec3 direction = spiral_direction(i, RayPacket::kSize);
-        packet.dir_x[i] = direction.x;
-        packet.dir_y[i] = direction.y;
-        packet.dir_z[i] = direction.z;
-        packet.tfar[i] = std::numeric_limits<float>::infinity();
+        set_lane(packet, lanes, i, direction);
         lanes[i] = glm::dot(direction, normal) >= 0 ? -1 : 0;
         started += lanes[i] != 0 ? 1 : 0;
     }

@@ -7,6 +7,7 @@
 #include <span>
 #include <utility>
 
+#include "bake/emitters/point_box.h"
 #include "bake/scene/emission.h"
 #include "bake/scene/punctual_light.h"
 #include "bake/scene/texture_footprint.h"
@@ -49,21 +50,14 @@ glm::dvec3 emission_in(const TriangleSource& from, const Weights& corners) {
 
 GlowingTriangle glowing_triangle(const TriangleSource& from, const Weights& weights) {
     const formats::Primitive& primitive = from.scene.primitives[from.primitive];
-    GlowingTriangle triangle;
+    std::array<glm::dvec3, 3> corner{};
     for (std::size_t k = 0; k < 3; ++k) {
         for (int j = 0; j < 3; ++j) {
-            triangle.corner[k] +=
-                weights[k][j] *
-                glm::dvec3(primitive.position[from.vertex[static_cast<std::size_t>(j)]]);
+            corner[k] += weights[k][j] *
+                         glm::dvec3(primitive.position[from.vertex[static_cast<std::size_t>(j)]]);
         }
     }
-    const glm::dvec3 cross = glm::cross(triangle.corner[1] - triangle.corner[0],
-                                        triangle.corner[2] - triangle.corner[0]);
-    const double twice = glm::length(cross);
-    if (twice > 0) triangle.normal = cross / twice;
-    triangle.area = twice / 2;
-    triangle.is_two_sided = from.scene.materials[primitive.material].double_sided;
-    return triangle;
+    return make_glowing_triangle(corner, from.scene.materials[primitive.material].double_sided);
 }
 
 // Whether parts differ by so little that their mean stands for them.
@@ -156,6 +150,13 @@ GlowingVoxels collect_voxels(const formats::Volume& volume) {
 
 }  // namespace
 
+GlowingTriangle make_glowing_triangle(const std::array<glm::dvec3, 3>& corner, bool is_two_sided) {
+    const glm::dvec3 cross = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const double twice = glm::length(cross);
+    return {corner, twice > 0 ? cross / twice : glm::dvec3(0), twice / 2, glm::dvec3(0),
+            is_two_sided};
+}
+
 glm::dvec3 GlowingVoxels::power(std::size_t i) const {
     return 4 * std::numbers::pi * volume * radiance[i];
 }
@@ -199,16 +200,10 @@ LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
         sources.lights.push_back(scene.lights[i]);
     }
     if (lamp.volume != formats::kNone) sources.voxels = collect_voxels(scene.volumes[lamp.volume]);
-    glm::dvec3 low(1e300), high(-1e300);
-    for (const formats::Primitive& primitive : scene.primitives) {
-        for (const glm::vec3& position : primitive.position) {
-            low = glm::min(low, glm::dvec3(position));
-            high = glm::max(high, glm::dvec3(position));
-        }
-    }
-    if (low.x <= high.x) {
-        sources.centre = 0.5 * (low + high);
-        sources.radius = 0.5 * glm::length(high - low);
+    const PointBox box = box_of_surfaces(scene);
+    if (box.low.x <= box.high.x) {
+        sources.centre = box.centre();
+        sources.radius = box.radius();
     }
     return sources;
 }

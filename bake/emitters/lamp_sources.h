@@ -22,6 +22,9 @@ struct GlowingTriangle {
     glm::dvec3 power() const;
 };
 
+/// Of radiance 0. Where its area is 0, so is its normal.
+GlowingTriangle make_glowing_triangle(const std::array<glm::dvec3, 3>& corner, bool is_two_sided);
+
 /// A textured triangle or a part of it, that stands for its own parts where it is far away.
 struct GlowingPart {
     GlowingTriangle whole;

@@ -62,13 +62,11 @@ LampSources media_sources(const formats::Scene& scene, const MediaLight& media, 
         const formats::Primitive& primitive = scene.primitives[p];
         sources.triangles.reserve(sources.triangles.size() + primitive.index.size() / 3);
         for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
-            GlowingTriangle triangle;
+            std::array<glm::dvec3, 3> corner;
             for (std::uint32_t c = 0; c < 3; ++c) {
-                triangle.corner[c] = glm::dvec3(primitive.position[primitive.index[i + c]]);
+                corner[c] = glm::dvec3(primitive.position[primitive.index[i + c]]);
             }
-            const glm::dvec3 across = glm::cross(triangle.corner[1] - triangle.corner[0],
-                                                 triangle.corner[2] - triangle.corner[0]);
-            const double twice_area = glm::length(across);
+            GlowingTriangle triangle = make_glowing_triangle(corner, false);
             std::optional<TextureView> view;
             if (textures != nullptr && !primitive.texcoord.empty()) {
                 view.emplace(TextureView{*textures, moments_of_triangle(uv_of(primitive, i))});
@@ -76,9 +74,7 @@ LampSources media_sources(const formats::Scene& scene, const MediaLight& media, 
             triangle.radiance =
                 std::numbers::inv_pi * mix_corners(scene, exitance, {p, i, false},
                                                    glm::vec3(1.0f / 3), view ? &*view : nullptr);
-            if (!(twice_area > 0) || triangle.radiance == glm::dvec3(0)) continue;
-            triangle.normal = across / twice_area;
-            triangle.area = 0.5 * twice_area;
+            if (!(triangle.area > 0) || triangle.radiance == glm::dvec3(0)) continue;
             sources.triangles.push_back(triangle);
         }
     }

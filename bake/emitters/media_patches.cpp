@@ -9,6 +9,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/receivers/receiver_key.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/transport/packet_lane.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -69,14 +70,7 @@ std::uint32_t basis_for(std::size_t receivers) {
 
 // The receiver of a medium nearest to the place where a ray straight down meets its surface.
 std::uint32_t receiver_below(const LampLight& light, const LitMedium& medium, const Receiver& at) {
-    RayPacket packet = rays_from(at.origin);
-    packet.dir_x[0] = -at.normal.x;
-    packet.dir_y[0] = -at.normal.y;
-    packet.dir_z[0] = -at.normal.z;
-    packet.tfar[0] = std::numeric_limits<float>::infinity();
-    LaneMask lanes{};
-    lanes[0] = -1;
-    const PacketHits hits = light.rays.closest(lanes, packet);
+    const PacketHits hits = closest_of_one(light.rays, at.origin, -at.normal);
     const auto own = hits.hit[0] == 0 ? medium.primitives.end()
                                       : std::ranges::find(medium.primitives, hits.primitive[0]);
     if (own == medium.primitives.end()) return formats::kNone;

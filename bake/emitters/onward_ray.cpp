@@ -19,21 +19,21 @@ constexpr double kGrazing = 1e-3;
 // The interpolated normal, facing the ray. The triangle's own where it does not.
 SurfaceShape shape_at(const formats::Scene& scene, const Arrival& at, const glm::dvec3& direction) {
     const formats::Primitive& primitive = scene.primitives[at.side.primitive];
-    const SurfaceShape flat{at.normal, glm::dmat3(0.0), glm::dmat3x2(0.0)};
+    const SurfaceShape flat{at.normal, glm::dmat3(0.0)};
     if (primitive.normal.empty()) return flat;
     std::array<glm::dvec3, 3> corners;
-    TriangleAttributes attributes;
+    std::array<glm::dvec3, 3> normals;
     glm::dvec3 sum(0);
     for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t vertex = primitive.index[at.side.first_index + k];
         corners[k] = glm::dvec3(primitive.position[vertex]);
-        attributes.normal[k] = glm::dvec3(primitive.normal[vertex]);
-        sum += at.weights[static_cast<int>(k)] * attributes.normal[k];
+        normals[k] = glm::dvec3(primitive.normal[vertex]);
+        sum += at.weights[static_cast<int>(k)] * normals[k];
     }
     if (!(glm::length(sum) > 0)) return flat;
     const glm::dvec3 P =
         at.weights.x * corners[0] + at.weights.y * corners[1] + at.weights.z * corners[2];
-    const SurfaceShape shape = interpolated_shape(triangle_gradients(corners, P), attributes);
+    const SurfaceShape shape = interpolated_shape(corners, normals, P);
     const SurfaceShape facing = glm::dot(shape.N, at.normal) < 0 ? flipped(shape) : shape;
     return -glm::dot(facing.N, direction) > kGrazing ? facing : flat;
 }
@@ -79,9 +79,9 @@ std::optional<glm::dvec3> scatter_by_facet(const Facet& facet, const SurfaceShap
                                         .v = facet.x[1],
                                         .N_g = at.normal});
     if (!out) return out;
-    const VisibleNormal normal = sample_visible_normal(glm::transpose(frame_around(shape.N)) * -D,
-                                                       {facet.alpha, facet.alpha},
-                                                       DiskMap::concentric, facet.x[0], facet.x[1]);
+    const VisibleNormal normal =
+        sample_visible_normal(glm::transpose(frame_around(shape.N)) * -D,
+                              {facet.alpha, facet.alpha}, facet.x[0], facet.x[1]);
     const double a = facet.alpha * facet.alpha - 1, z = normal.m.z;
     const auto change = [&](const glm::dvec3& dm) { return -4 * a * z * dm.z / (a * z * z + 1); };
     path.column[path.count - 2].dlnW += change(normal.dm_du);

@@ -7,6 +7,7 @@
 
 #include "bake/base/rng.h"
 #include "bake/emitters/largest_band.h"
+#include "bake/emitters/spread_points.h"
 #include "bake/emitters/trace_particles.h"
 #include "bake/path_differentials/area_sample.h"
 #include "bake/scene/punctual_light.h"
@@ -136,16 +137,12 @@ Particle start_particle(const StartTable& table, const DifferentialRules& rules,
     double turn = 1;
     for (std::size_t k = 0; k < lattice.size(); ++k) {
         turn /= 1.085070245491451;  // the root of x^9 = x + 1
-        const double at = static_cast<double>(k < 4 ? shift[k] : more[k - 4]) +
-                          static_cast<double>(particle) * turn;
-        lattice[k] = at - std::floor(at);
+        lattice[k] = fraction(static_cast<double>(k < 4 ? shift[k] : more[k - 4]) +
+                              static_cast<double>(particle) * turn);
     }
     const std::array<double, 4> x{lattice[1], lattice[2], lattice[3], lattice[4]};
     const double total = table.cumulative.back(), at = lattice[0] * total;
-    const auto source = std::min<std::size_t>(
-        static_cast<std::size_t>(std::ranges::upper_bound(table.cumulative, at) -
-                                 table.cumulative.begin()),
-        table.cumulative.size() - 1);
+    const std::size_t source = part_of_sum(table.cumulative, at);
     const double before = source == 0 ? 0 : table.cumulative[source - 1];
     const double chance = (table.cumulative[source] - before) / total;
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "bake/emitters/point_box.h"
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/largest_light.h"
 #include "bake/volumes/plan_volumes.h"
@@ -15,18 +16,8 @@
 namespace opaline::bake {
 namespace {
 
-struct GapBox {
-    glm::dvec3 low{std::numeric_limits<double>::infinity()};
-    glm::dvec3 high{-std::numeric_limits<double>::infinity()};
-
-    void include(const glm::dvec3& point) {
-        low = glm::min(low, point);
-        high = glm::max(high, point);
-    }
-};
-
 // Between any two of their points, at least.
-double distance_of(const GapBox& a, const GapBox& b) {
+double distance_of(const PointBox& a, const PointBox& b) {
     return glm::length(glm::max(glm::dvec3(0), glm::max(a.low - b.high, b.low - a.high)));
 }
 
@@ -46,11 +37,7 @@ double largest_albedo(const formats::Scene& scene) {
 
 // Light that arrives where no volume scatters it, over pi: all voxels at the least distance.
 double largest_far_light(const formats::Scene& scene, const formats::Volume& volume) {
-    GapBox surfaces, glow;
-    for (const formats::Primitive& primitive : scene.primitives) {
-        for (const glm::vec3& position : primitive.position)
-            surfaces.include(glm::dvec3(position));
-    }
+    PointBox glow;
     formats::SparseGrid<glm::vec3> placed = volume.emission;
     placed.to_scene = volume.density.to_scene;
     for (const glm::dvec3& corner : placed.corners())
@@ -59,7 +46,7 @@ double largest_far_light(const formats::Scene& scene, const formats::Volume& vol
     for (const glm::vec3& q : placed.value)
         sum += glm::dvec3(q);
     const double voxel = std::abs(glm::determinant(glm::dmat3(placed.to_scene)));
-    const double distance = distance_of(surfaces, glow);
+    const double distance = distance_of(box_of_surfaces(scene), glow);
     return distance > 0
                ? voxel * std::max({sum.x, sum.y, sum.z}) / (std::numbers::pi * distance * distance)
                : std::numeric_limits<double>::infinity();
@@ -89,18 +76,9 @@ PlanEntry decide_volume(const formats::Scene& scene, const formats::Volume& volu
     return entry;
 }
 
-// Of a ball around all surfaces [m].
-double scene_radius(const formats::Scene& scene) {
-    GapBox surfaces;
-    for (const formats::Primitive& primitive : scene.primitives) {
-        for (const glm::vec3& position : primitive.position)
-            surfaces.include(glm::dvec3(position));
-    }
-    return 0.5 * glm::length(surfaces.high - surfaces.low);
-}
-
-// Of a lamp's lights: its flux into that ball over that of a sky of radiance 1, which is pi times
-// the ball's surface. Exporters write lux and candela: often hundreds of times as much.
+// Of a lamp's lights: its flux into the ball around all surfaces over that of a sky of radiance 1,
+// which is pi times the ball's surface. Exporters write lux and candela: often hundreds of times as
+// much.
 double times_sky(const formats::Scene& scene, const Lamp& lamp, double radius) {
     const double sky = 4 * std::numbers::pi * std::numbers::pi * radius * radius;
     double flux = 0;
@@ -144,7 +122,7 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
         std::ranges::any_of(scene.primitives, [](const auto& p) { return !p.index.empty(); });
     std::uint32_t number = 0;
     std::vector<Lamp> lamps = list_lamps(scene);
-    const double radius = lamps.empty() ? 0 : scene_radius(scene);
+    const double radius = lamps.empty() ? 0 : box_of_surfaces(scene).radius();
     for (const Lamp& lamp : lamps) {
         PlanEntry entry;
         entry.name = kEmitters;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -14,10 +13,12 @@
 #include "bake/emitters/bounce_color.h"
 #include "bake/emitters/largest_band.h"
 #include "bake/emitters/onward_ray.h"
+#include "bake/emitters/spread_points.h"
 #include "bake/emitters/straight_light.h"
 #include "bake/emitters/surface_arrival.h"
 #include "bake/path_differentials/disk_map.h"
 #include "bake/scene/texture_footprint.h"
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -27,10 +28,6 @@ constexpr std::uint32_t kMostGathered = 16;
 constexpr double kLeastGathered = 1e-3;  // of the light that a ray gathers
 constexpr double kNear = 0.01;           // of the scene: a receiver's surface is not farther
 constexpr std::uint32_t kLeastGlowRays = 16;
-
-double fraction(double x) {
-    return x - std::floor(x);
-}
 
 bool has_bounces(const LampLight& light) {
     return (light.media != nullptr && !light.media->empty()) ||
@@ -159,26 +156,18 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
             LaneMask lanes{};
             const std::uint32_t count = std::min(light.samples - first, RayPacket::kSize);
             for (std::uint32_t lane = 0; lane < count; ++lane) {
-                const std::uint32_t i = first + lane;
-                const DiskPoint disk =
-                    map_to_disk(DiskMap::concentric,
-                                fraction(static_cast<double>(shift[0]) + i * 0.7548776662466927),
-                                fraction(static_cast<double>(shift[1]) + i * 0.5698402909980532));
+                const glm::dvec2 u = spread_point({shift[0], shift[1]}, first + lane);
+                const DiskPoint disk = map_to_disk(u.x, u.y);
                 const glm::dvec2 across = disk.radius * disk.outward;
-                const glm::vec3 direction = frame.to_world(
-                    glm::vec3(across.x, across.y, std::sqrt(std::max(0.0, 1 - disk.q))));
-                packet.dir_x[lane] = direction.x;
-                packet.dir_y[lane] = direction.y;
-                packet.dir_z[lane] = direction.z;
-                packet.tfar[lane] = std::numeric_limits<float>::infinity();
-                lanes[lane] = -1;
+                set_lane(packet, lanes, lane,
+                         frame.to_world(
+                             glm::vec3(across.x, across.y, std::sqrt(std::max(0.0, 1 - disk.q)))));
             }
             const PacketHits hits = light.rays.closest(lanes, packet);
             for (std::uint32_t lane = 0; lane < count; ++lane) {
                 const auto at = arrival_of(hits, lane);
                 if (!at) continue;
-                const glm::vec3 direction(packet.dir_x[lane], packet.dir_y[lane],
-                                          packet.dir_z[lane]);
+                const glm::vec3 direction = direction_of(packet, lane);
                 const double cell =
                     cell_of_ray(glm::dot(direction, receiver.normal), light.samples);
                 const auto view = view_of_cell(light, *at, {direction, cell});
@@ -219,12 +208,8 @@ void add_caustics(const LampLight& light, const Receiver& receiver, std::span<gl
     const Frame frame = make_frame(receiver.normal);
     for (std::uint32_t i = 0; i < kRays; ++i) {
         const glm::vec3 across(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, -1);
-        const glm::vec3 direction = glm::normalize(frame.to_world(across));
-        packet.dir_x[i] = direction.x;
-        packet.dir_y[i] = direction.y;
-        packet.dir_z[i] = direction.z;
-        packet.tfar[i] = static_cast<float>(kNear * light.sources.front().radius);
-        lanes[i] = -1;
+        set_lane(packet, lanes, i, glm::normalize(frame.to_world(across)),
+                 static_cast<float>(kNear * light.sources.front().radius));
     }
     rays += kRays;
     const PacketHits hits = light.rays.closest(lanes, packet);

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <span>
 #include <vector>
 
 #include "bake/emitters/glow_light.h"
 #include "bake/emitters/largest_band.h"
+#include "bake/emitters/spread_points.h"
 #include "bake/path_differentials/area_sample.h"
 #include "bake/scene/punctual_light.h"
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -30,11 +31,7 @@ class ShadowRays {
 
     /// Adds `light` to the irradiance if nothing blocks the unit direction up to `reach`.
     void add(const glm::vec3& direction, float reach, const glm::dvec3& light) {
-        packet_.dir_x[count_] = direction.x;
-        packet_.dir_y[count_] = direction.y;
-        packet_.dir_z[count_] = direction.z;
-        packet_.tfar[count_] = reach;
-        lanes_[count_] = -1;
+        set_lane(packet_, lanes_, count_, direction, reach);
         light_[count_] = light;
         reach_[count_] = static_cast<double>(reach);
         if (++count_ == RayPacket::kSize) trace();
@@ -51,7 +48,7 @@ class ShadowRays {
         if (!scene_.is_empty()) scene_.occluded(lanes_, packet_);
         for (std::size_t i = 0; i < count_; ++i) {
             if (!(packet_.tfar[i] >= 0)) continue;
-            const glm::dvec3 direction(packet_.dir_x[i], packet_.dir_y[i], packet_.dir_z[i]);
+            const glm::dvec3 direction(direction_of(packet_, i));
             arrived_ += light_[i] * volume_transmittance(volumes_, origin_, direction, reach_[i]);
         }
         lanes_ = {};
@@ -69,12 +66,6 @@ class ShadowRays {
     glm::dvec3 arrived_{0};
     std::uint64_t& rays_;
 };
-
-// A point sequence of low discrepancy [Roberts2018].
-glm::dvec2 spread_point(std::uint32_t i) {
-    const double u = 0.5 + (i + 1) * 0.7548776662466927, v = 0.5 + (i + 1) * 0.5698402909980532;
-    return {u - std::floor(u), v - std::floor(v)};
-}
 
 // cos cos' / d^2 between a point and one of a triangle.
 double geometry(const glm::dvec3& way, const glm::dvec3& normal, const glm::dvec3& other) {
@@ -130,11 +121,9 @@ glm::dvec3 from_triangles(const LampSources& lamp, const Receiver& receiver, std
     glm::dvec3 all(0);
     for (std::uint32_t i = 0; i < samples; ++i) {
         const double at = (i + 0.5) / samples * sum;
-        const auto t = std::min<std::size_t>(
-            static_cast<std::size_t>(std::ranges::upper_bound(cumulative, at) - cumulative.begin()),
-            factor.size() - 1);
+        const std::size_t t = part_of_sum(cumulative, at);
         const GlowingTriangle& triangle = *triangles[t];
-        const glm::dvec2 uv = spread_point(i);
+        const glm::dvec2 uv = spread_point(glm::dvec2(0.5), i + 1);
         const glm::dvec3 way = sample_triangle_folded(triangle.corner, uv.x, uv.y).P - point;
         const double distance = glm::length(way);
         // Its mean over the triangle is radiance / largest: the choice is in proportion to both.

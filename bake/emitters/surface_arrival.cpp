@@ -1,7 +1,8 @@
 #include "bake/emitters/surface_arrival.h"
 
 #include <algorithm>
-#include <limits>
+
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 
@@ -22,14 +23,7 @@ std::optional<Arrival> arrival_of(const PacketHits& hits, std::size_t lane) {
 
 std::optional<Arrival> find_arrival(const RayScene& surfaces, const glm::vec3& from,
                                     const glm::vec3& direction) {
-    RayPacket packet = rays_from(from);
-    packet.dir_x[0] = direction.x;
-    packet.dir_y[0] = direction.y;
-    packet.dir_z[0] = direction.z;
-    packet.tfar[0] = std::numeric_limits<float>::infinity();
-    LaneMask lanes{};
-    lanes[0] = -1;
-    return arrival_of(surfaces.closest(lanes, packet), 0);
+    return arrival_of(closest_of_one(surfaces, from, direction), 0);
 }
 
 glm::dvec3 leave_surface(const glm::dvec3& from, const glm::dvec3& direction, const Arrival& at,

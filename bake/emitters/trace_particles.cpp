@@ -170,8 +170,7 @@ ParticleLight trace_particles(const formats::Scene& scene, const RayScene& rays_
                         layout,
                         run,
                         starts,
-                        {.steps = DifferentialRules::Steps::global,
-                         .samples = static_cast<double>(run.particles),
+                        {.samples = static_cast<double>(run.particles),
                          .gradient_limit = run.gradient_limit,
                          .extent = 2 * lamp.radius}};
     for_each_block_in_order(

@@ -12,8 +12,10 @@
 #include "bake/emitters/bounce_color.h"
 #include "bake/emitters/largest_band.h"
 #include "bake/emitters/onward_ray.h"
+#include "bake/emitters/spread_points.h"
 #include "bake/emitters/surface_arrival.h"
 #include "bake/scene/punctual_light.h"
+#include "bake/transport/packet_lane.h"
 #include "bake/volumes/walk_parts.h"
 
 namespace opaline::bake {
@@ -38,19 +40,6 @@ std::vector<Ball> balls_around(std::span<const GlowingGrid> glow) {
         balls.push_back({to_scene * (middle - glm::dvec3(grid.offset)), radius});
     }
     return balls;
-}
-
-bool is_hidden(const RayScene& surfaces, const glm::vec3& from, const glm::vec3& direction,
-               float reach) {
-    RayPacket packet = rays_from(from);
-    packet.dir_x[0] = direction.x;
-    packet.dir_y[0] = direction.y;
-    packet.dir_z[0] = direction.z;
-    packet.tfar[0] = reach;
-    LaneMask lanes{};
-    lanes[0] = -1;
-    surfaces.occluded(lanes, packet);
-    return packet.tfar[0] < 0;
 }
 
 /// Bands that follow the extinction of one of them.
@@ -78,8 +67,8 @@ struct BackwardPath {
         double turn = 1;
         for (std::size_t k = 0; k < first.size(); ++k) {
             turn /= 1.1347241384015194;  // the root of x^6 = x + 1
-            const double at = static_cast<double>(k < 4 ? shift[k] : more[0]) + path * turn;
-            first[k] = static_cast<float>(at - std::floor(at));
+            first[k] = static_cast<float>(
+                fraction(static_cast<double>(k < 4 ? shift[k] : more[0]) + path * turn));
         }
     }
 
@@ -109,11 +98,7 @@ struct BackwardPath {
         auto x = draw();
         if (is_first) std::copy_n(first.begin(), 3, x.begin());
         const double total = sources.cumulative.back();
-        const auto t = std::min<std::size_t>(
-            static_cast<std::size_t>(
-                std::ranges::upper_bound(sources.cumulative, static_cast<double>(x[0]) * total) -
-                sources.cumulative.begin()),
-            sources.triangles.size() - 1);
+        const std::size_t t = part_of_sum(sources.cumulative, static_cast<double>(x[0]) * total);
         const double chance =
             (sources.cumulative[t] - (t == 0 ? 0 : sources.cumulative[t - 1])) / total;
         const GlowingTriangle& triangle = sources.triangles[t];

@@ -19,9 +19,13 @@ inline AreaSample sample_parallelogram(const glm::dvec3& A, const glm::dvec3& e1
 
 /// Uniform in a triangle: the square is folded along its diagonal. Columns are constant on either
 /// side of it. u, v in [0, 1].
-AreaSample sample_triangle_folded(const std::array<glm::dvec3, 3>& corners, double u, double v);
-
-/// Uniform in a triangle, by sqrt(u): dP_du is unbounded at the corner u = 0. u in (0, 1].
-AreaSample sample_triangle_sqrt(const std::array<glm::dvec3, 3>& corners, double u, double v);
+inline AreaSample sample_triangle_folded(const std::array<glm::dvec3, 3>& corners, double u,
+                                         double v) {
+    const glm::dvec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+    if (v > u) {
+        return {corners[0] + u / 2 * e1 + (v - u / 2) * e2, (e1 - e2) / 2.0, e2};
+    }
+    return {corners[0] + (u - v / 2) * e1 + v / 2 * e2, e1, (e2 - e1) / 2.0};
+}
 
 }  // namespace opaline::bake

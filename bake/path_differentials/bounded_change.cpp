@@ -45,37 +45,28 @@ glm::dvec3 bounded_direction(const glm::dvec3& column, double step) {
     return chord > std::numbers::sqrt2 ? column * (std::numbers::sqrt2 / chord) : column;
 }
 
-LobeDirection secant_of_lobe(const Lobe& lobe, DiskMap map, double u, double v, double step_u,
-                             double step_v) {
-    const DiskPoint disk = map_to_disk(map, u, v);
+LobeDirection secant_of_lobe(const Lobe& lobe, double u, double v, double step) {
+    const DiskPoint disk = map_to_disk(u, v);
     const LobePoint middle = eval_lobe(lobe, disk.q);
     const double stretch = std::sqrt(middle.square_sine_over_q);
     const glm::dvec3 outward(disk.outward, 0), around(-disk.outward.y, disk.outward.x, 0);
     const glm::dvec3 D = stretch * disk.radius * outward + glm::dvec3(0, 0, middle.cosine);
-    // Sine and cosine at a signed radius: the concentric map goes on through the middle.
+    // At a signed radius: the map goes on through the middle.
     const auto at_radius = [&](double radius) {
         const LobePoint at = eval_lobe(lobe, radius * radius);
         return radius * std::sqrt(at.square_sine_over_q) * outward + glm::dvec3(0, 0, at.cosine);
     };
-    const auto column = [&](const DiskColumn& by, double step) {
-        glm::dvec3 change = stretch * by.tangential * around;
-        if (by.radial != 0) {
-            double lower = disk.radius - by.radial * step / 2;
-            double upper = disk.radius + by.radial * step / 2;
-            if (map == DiskMap::polar) {
-                lower = std::sqrt(std::max(0.0, v - step / 2));
-                upper = std::sqrt(std::min(1.0, v + step / 2));
-            }
-            change += (at_radius(std::clamp(upper, -1.0, 1.0)) -
-                       at_radius(std::clamp(lower, -1.0, 1.0))) /
-                      step;
-        }
+    const auto column = [&](const DiskColumn& by) {
+        const double half = by.radial * step / 2;
+        const glm::dvec3 change = stretch * by.tangential * around +
+                                  (at_radius(std::clamp(disk.radius + half, -1.0, 1.0)) -
+                                   at_radius(std::clamp(disk.radius - half, -1.0, 1.0))) /
+                                      step;
         return bounded_direction(across(D, change), step);
     };
     return {.D = D,
-            .dD_du = column(disk.du, step_u),
-            .dD_dv = column(disk.dv, step_v),
-            .pdf = middle.pdf,
+            .dD_du = column(disk.du),
+            .dD_dv = column(disk.dv),
             .dln_pdf_du = middle.dln_pdf * disk.du.dq,
             .dln_pdf_dv = middle.dln_pdf * disk.dv.dq};
 }

@@ -29,8 +29,7 @@ glm::dvec3 bounded_refraction(const Refraction& event, const glm::dvec3& dD, con
 glm::dvec3 bounded_direction(const glm::dvec3& column, double step);
 
 /// A sample of a lobe with the secant of its sine and cosine over the radial step, and
-/// bounded_direction. Tends to sample_lobe for small steps. steps in (0, 1].
-LobeDirection secant_of_lobe(const Lobe& lobe, DiskMap map, double u, double v, double step_u,
-                             double step_v);
+/// bounded_direction. Tends to sample_lobe for small steps. step in (0, 1].
+LobeDirection secant_of_lobe(const Lobe& lobe, double u, double v, double step);
 
 }  // namespace opaline::bake

@@ -4,22 +4,11 @@
 #include <numbers>
 
 namespace opaline::bake {
-namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-glm::dvec2 at_azimuth(double phi) {
-    return {std::cos(phi), std::sin(phi)};
-}
-
-DiskPoint polar_point(double u, double v) {
-    const double radius = std::sqrt(v);
-    return {v, radius, at_azimuth(2 * kPi * u), {0, 0, 2 * kPi * radius}, {1, 0.5 / radius, 0}};
-}
-
-/// The larger coordinate is the radius, with its sign; the other one over it turns by 45 degrees
-/// at most.
-DiskPoint concentric_point(double u, double v) {
+// The larger coordinate is the radius, with its sign; the other one over it turns by 45 degrees at
+// most.
+DiskPoint map_to_disk(double u, double v) {
+    constexpr double kPi = std::numbers::pi;
     const double a = 2 * u - 1, b = 2 * v - 1;
     const bool by_a = std::abs(a) > std::abs(b) || (a == 0 && b == 0);
     const double r = by_a ? a : b, other = by_a ? b : a;
@@ -29,14 +18,8 @@ DiskPoint concentric_point(double u, double v) {
     const double turn = by_a ? 1 : -1;
     const DiskColumn along{4 * r, 2 * sign, -turn * kPi / 2 * k * sign};
     const DiskColumn across{0, 0, turn * kPi / 2 * sign};
-    return {r * r, std::abs(r), sign * at_azimuth(phi), by_a ? along : across,
-            by_a ? across : along};
-}
-
-}  // namespace
-
-DiskPoint map_to_disk(DiskMap map, double u, double v) {
-    return map == DiskMap::polar ? polar_point(u, v) : concentric_point(u, v);
+    return {r * r, std::abs(r), sign * glm::dvec2(std::cos(phi), std::sin(phi)),
+            by_a ? along : across, by_a ? across : along};
 }
 
 }  // namespace opaline::bake

@@ -4,12 +4,6 @@
 
 namespace opaline::bake {
 
-/// How two random numbers become a point of the unit disk, uniform over its area.
-enum class DiskMap {
-    polar,      ///< radius sqrt(v), azimuth 2 pi u
-    concentric  ///< squares around the middle become circles: no derivative diverges there
-};
-
 /// How a point of the disk moves with one random number.
 struct DiskColumn {
     double dq = 0;          ///< change of the squared radius
@@ -24,9 +18,9 @@ struct DiskPoint {
     DiskColumn du, dv;
 };
 
-/// u, v in [0, 1]; v > 0 in the polar map, whose radial derivative 1 / (2 sqrt v) is infinite in
-/// the middle. The columns of the concentric map jump on the diagonals; the area that they span is
-/// pi everywhere.
-DiskPoint map_to_disk(DiskMap map, double u, double v);
+/// Uniform over the disk's area: squares around the middle become circles, so that no derivative
+/// diverges there. u, v in [0, 1]. Columns jump on the diagonals; the area that they span is pi
+/// everywhere.
+DiskPoint map_to_disk(double u, double v);
 
 }  // namespace opaline::bake

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 namespace opaline::bake {
@@ -29,14 +30,6 @@ std::vector<glm::dvec2> sorted_fan(std::span<const glm::dvec2> vectors) {
     return fan;
 }
 
-glm::dvec2 sum_of(std::span<const glm::dvec2> vectors) {
-    glm::dvec2 sum(0);
-    for (const glm::dvec2& v : vectors) {
-        sum += v;
-    }
-    return sum;
-}
-
 }  // namespace
 
 double polygon_area(std::span<const glm::dvec2> vectors) {
@@ -53,19 +46,9 @@ double pair_area(const FootprintPair& pair) {
     return std::abs(cross2(pair.A, pair.B));
 }
 
-FootprintPair split_pair(std::span<const glm::dvec2> vectors) {
-    const std::vector<glm::dvec2> fan = sorted_fan(vectors);
-    const glm::dvec2 sum = sum_of(fan);
-    glm::dvec2 left(0);
-    for (const glm::dvec2& v : fan) {
-        left += cross2(sum, v) > 0 ? v : glm::dvec2(0);
-    }
-    return {left, sum - left};
-}
-
 FootprintPair best_pair(std::span<const glm::dvec2> vectors) {
     const std::vector<glm::dvec2> fan = sorted_fan(vectors);
-    const glm::dvec2 sum = sum_of(fan);
+    const glm::dvec2 sum = std::accumulate(fan.begin(), fan.end(), glm::dvec2(0));
     FootprintPair best{sum, glm::dvec2(0)};
     double most = 0;
     // A is a run of the fan; the rest, the part before it turned round, is the run that follows.

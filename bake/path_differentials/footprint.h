@@ -20,10 +20,6 @@ struct FootprintPair {
 /// |A x B|.
 double pair_area(const FootprintPair& pair);
 
-/// [Suykens2001]: the vectors, turned into the upper half plane, on either side of their sum. An
-/// inscribed parallelogram; which one depends on the axes of coordinates.
-FootprintPair split_pair(std::span<const glm::dvec2> vectors);
-
 /// The largest parallelogram of two groups of vectors adjacent in angle: at least 2 / pi of the
 /// area, independent of axes, order and signs.
 FootprintPair best_pair(std::span<const glm::dvec2> vectors);

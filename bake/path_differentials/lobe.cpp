@@ -1,12 +1,9 @@
 #include "bake/path_differentials/lobe.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace opaline::bake {
 namespace {
-
-constexpr double kTwoPi = 2 * std::numbers::pi;
 
 LobePoint eval_power(double exponent, double q) {
     const double n = exponent + 1, log_cosine = std::log1p(-q) / n;
@@ -14,7 +11,6 @@ LobePoint eval_power(double exponent, double q) {
     return {.cosine = std::exp(log_cosine),
             .square_sine_over_q = q > 0 ? -std::expm1(2 * log_cosine) / q : 2 / n,
             .dcosine = -per_share / n,
-            .pdf = n / (per_share * kTwoPi),
             .dln_pdf = -exponent / (n * (1 - q))};
 }
 
@@ -28,7 +24,6 @@ LobePoint eval_henyey_greenstein(double g, double q) {
     return {.cosine = one_minus < 1 ? 1 - one_minus : one_plus - 1,
             .square_sine_over_q = per_q * one_plus,
             .dcosine = -2 * product / a,
-            .pdf = a / (2 * kTwoPi * product),
             .dln_pdf = -6 * g / a};
 }
 
@@ -36,7 +31,6 @@ LobePoint eval_cap(double height, double q) {
     return {.cosine = 1 - height * q,
             .square_sine_over_q = height * (2 - height * q),
             .dcosine = -height,
-            .pdf = 1 / (kTwoPi * height),
             .dln_pdf = 0};
 }
 
@@ -56,8 +50,8 @@ LobePoint eval_lobe(const Lobe& lobe, double q) {
     return eval_cap(lobe.parameter, q);
 }
 
-LobeDirection sample_lobe(const Lobe& lobe, DiskMap map, double u, double v) {
-    const DiskPoint disk = map_to_disk(map, u, v);
+LobeDirection sample_lobe(const Lobe& lobe, double u, double v) {
+    const DiskPoint disk = map_to_disk(u, v);
     const LobePoint at = eval_lobe(lobe, disk.q);
     const double stretch = std::sqrt(at.square_sine_over_q);  // sine over radius, finite at q = 0
     const glm::dvec2 e = disk.outward, across(-e.y, e.x);
@@ -68,7 +62,6 @@ LobeDirection sample_lobe(const Lobe& lobe, DiskMap map, double u, double v) {
     return {.D = glm::dvec3(stretch * disk.radius * e, at.cosine),
             .dD_du = column(disk.du),
             .dD_dv = column(disk.dv),
-            .pdf = at.pdf,
             .dln_pdf_du = at.dln_pdf * disk.du.dq,
             .dln_pdf_dv = at.dln_pdf * disk.dv.dq};
 }

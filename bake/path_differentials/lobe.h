@@ -23,8 +23,7 @@ struct Lobe {
 struct LobePoint {
     double cosine = 1;          ///< between direction and axis
     double square_sine_over_q;  ///< sin^2 / q, finite and without cancellation down to q = 0
-    double dcosine = 0;         ///< d cosine / dq, < 0
-    double pdf = 0;             ///< over solid angle [1/sr]
+    double dcosine = 0;         ///< d cosine / dq = -1 / (2 pi pdf)
     double dln_pdf = 0;         ///< d ln pdf / dq
 };
 
@@ -35,12 +34,11 @@ LobePoint eval_lobe(const Lobe& lobe, double q);
 struct LobeDirection {
     glm::dvec3 D{0, 0, 1};
     glm::dvec3 dD_du{0}, dD_dv{0};
-    double pdf = 0;  ///< over solid angle [1/sr]: |dD_du x dD_dv| = 1 / pdf
-    double dln_pdf_du = 0, dln_pdf_dv = 0;
+    double dln_pdf_du = 0, dln_pdf_dv = 0;  ///< of the pdf 1 / |dD_du x dD_dv|
 };
 
-/// u, v as map_to_disk has them, q < 1. Derivatives are exact: unbounded near the axis in the polar
-/// map, and where the density ends (q near 1). `secant_of_lobe` bounds them.
-LobeDirection sample_lobe(const Lobe& lobe, DiskMap map, double u, double v);
+/// u, v as map_to_disk has them, q < 1. Derivatives are exact: unbounded where the density ends (q
+/// near 1). `secant_of_lobe` bounds them.
+LobeDirection sample_lobe(const Lobe& lobe, double u, double v);
 
 }  // namespace opaline::bake

@@ -4,9 +4,16 @@
 #include <optional>
 #include <span>
 
-#include "bake/path_differentials/differential_column.h"
-
 namespace opaline::bake {
+
+/// How the current vertex of a path moves with one of its random numbers x_j in [0, 1], or with a
+/// sum of them that was merged.
+struct DifferentialColumn {
+    glm::dvec3 dP{0};  ///< of the vertex [m]
+    glm::dvec3 dD{0};  ///< of the unit direction of propagation
+    double dlnW = 0;   ///< relative change of the contribution
+    double step = 1;   ///< full length that x_j moves by, in units of the path's step
+};
 
 /// Where columns are merged: at a vertex of direction D, whose points move in the plane with normal
 /// N_g, or in space in a volume.

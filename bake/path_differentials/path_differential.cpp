@@ -5,19 +5,15 @@
 #include <cmath>
 
 #include "bake/path_differentials/axis_frame.h"
-#include "bake/path_differentials/steps.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr std::size_t kMergeAbove = 6;
-
-bool is_global(const DifferentialRules& rules) {
-    return rules.steps == DifferentialRules::Steps::global;
-}
+constexpr int kLimitedFrom = 2;  // with one glossy event, steps tile its lobe
 
 double path_step(const PathDifferential& path, const DifferentialRules& rules) {
-    return is_global(rules) ? global_step(rules.samples, path.variables, path.survival) : 1;
+    return global_step(rules.samples, path.variables, path.survival);
 }
 
 /// step_j dP_j in the frame's first two axes, at most a quarter of the scene long.
@@ -67,13 +63,16 @@ void add_direction(PathDifferential& path, const DifferentialColumn& du,
     ++path.scatterings;
 }
 
-/// Step of a column that is about to be added, among two.
-double step_to_come(const PathDifferential& path, const DifferentialRules& rules, double own) {
-    return is_global(rules) ? own * global_step(rules.samples, path.variables + 2, path.survival)
-                            : own;
+/// Step of the two columns that are about to be added.
+double step_to_come(const PathDifferential& path, const DifferentialRules& rules) {
+    return global_step(rules.samples, path.variables + 2, path.survival);
 }
 
 }  // namespace
+
+double global_step(double samples, int variables, double survival) {
+    return variables > 0 ? std::min(1.0, std::pow(samples * survival, -1.0 / variables)) : 1.0;
+}
 
 void add_variable(PathDifferential& path, const DifferentialColumn& column) {
     assert(path.count < PathDifferential::kMost);
@@ -83,9 +82,9 @@ void add_variable(PathDifferential& path, const DifferentialColumn& column) {
 
 double column_step(const PathDifferential& path, const DifferentialRules& rules,
                    const DifferentialColumn& column) {
-    const double step = column.step * path_step(path, rules);
-    return path.scatterings >= rules.limited_from
-               ? limited_step(step, column.dlnW, rules.gradient_limit)
+    const double step = column.step * path_step(path, rules), change = std::abs(column.dlnW);
+    return path.scatterings >= kLimitedFrom && change * step > rules.gradient_limit
+               ? rules.gradient_limit / change
                : step;
 }
 
@@ -117,19 +116,16 @@ void aim_at_normal(PathDifferential& path, const glm::dmat3& dN_dP) {
 
 glm::dvec3 scatter_in_lobe(PathDifferential& path, const DifferentialRules& rules,
                            const LobeEvent& event) {
-    const LobeDirection sample = secant_of_lobe(event.lobe, event.map, event.u, event.v,
-                                                step_to_come(path, rules, event.step_u),
-                                                step_to_come(path, rules, event.step_v));
+    const LobeDirection sample =
+        secant_of_lobe(event.lobe, event.u, event.v, step_to_come(path, rules));
     const glm::dmat3 frame = frame_around(event.axis);
     const glm::dvec3 direction = frame * sample.D;
     for (DifferentialColumn& column : path.columns()) {
         column.dD = carry_with_axis(event.axis, column.dD, direction);
     }
     merge_above(path, rules, {direction, event.N_g});
-    const double counted = rules.form == GradientForm::contribution ? 1 : 0;
-    add_direction(path,
-                  {glm::dvec3(0), frame * sample.dD_du, counted * sample.dln_pdf_du, event.step_u},
-                  {glm::dvec3(0), frame * sample.dD_dv, counted * sample.dln_pdf_dv, event.step_v});
+    add_direction(path, {glm::dvec3(0), frame * sample.dD_du, sample.dln_pdf_du},
+                  {glm::dvec3(0), frame * sample.dD_dv, sample.dln_pdf_dv});
     return direction;
 }
 
@@ -138,7 +134,7 @@ std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const Differ
     const glm::dmat3 frame = frame_around(event.N), to_frame = glm::transpose(frame);
     const glm::dvec3 w_i = to_frame * -event.D;
     const VisibleNormal facet =
-        sample_visible_normal(w_i, {event.alpha, event.alpha}, event.map, event.u, event.v);
+        sample_visible_normal(w_i, {event.alpha, event.alpha}, event.u, event.v);
     const Mirror mirror = make_mirror(-w_i, facet.m);
     const bool refracts = event.eta > 0;
     const auto refraction = refracts ? make_refraction(-w_i, facet.m, event.eta) : std::nullopt;
@@ -162,12 +158,12 @@ std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const Differ
         column.dD = frame * change(dw_i, facet.dm_dwi * dw_i, step) + glm::cross(turn, direction);
     }
     merge_above(path, rules, {direction, event.N_g});
-    const auto own = [&](const glm::dvec3& dm, double step) {
-        const double full = step_to_come(path, rules, step);
-        const glm::dvec3 dD = frame * change(glm::dvec3(0), dm, full);
-        return DifferentialColumn{glm::dvec3(0), bounded_direction(dD, full), 0, step};
+    const auto own = [&](const glm::dvec3& dm) {
+        const double step = step_to_come(path, rules);
+        const glm::dvec3 dD = frame * change(glm::dvec3(0), dm, step);
+        return DifferentialColumn{glm::dvec3(0), bounded_direction(dD, step)};
     };
-    add_direction(path, own(facet.dm_du, event.step_u), own(facet.dm_dv, event.step_v));
+    add_direction(path, own(facet.dm_du), own(facet.dm_dv));
     return direction;
 }
 

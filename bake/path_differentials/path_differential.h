@@ -6,30 +6,18 @@
 #include <span>
 
 #include "bake/path_differentials/bounded_change.h"
-#include "bake/path_differentials/differential_column.h"
 #include "bake/path_differentials/footprint.h"
 #include "bake/path_differentials/merge_columns.h"
 #include "bake/path_differentials/visible_normal.h"
 
 namespace opaline::bake {
 
-/// Which contribution a path's gradient is of.
-enum class GradientForm {
-    contribution,  ///< F: factors that importance sampling follows count as well
-    weight         ///< F / p: they cancel
-};
-
 /// What a path's steps and footprints are.
 struct DifferentialRules {
-    enum class Steps {
-        by_event,  ///< each column has its own: filtering, bounces
-        global     ///< (samples survival)^(-1 / variables) for all: particles
-    } steps = Steps::by_event;
-    double samples = 1;  ///< paths of the whole estimate, for global steps
-    GradientForm form = GradientForm::contribution;
-    double gradient_limit = 0.7;  ///< limited_step's; > 0, infinite: none
-    /// Scatterings from which the limit holds. With one glossy event local steps tile its lobe.
-    int limited_from = 2;
+    double samples = 1;  ///< paths of the whole estimate
+    /// From the second scattering on, a column's contribution changes by at most e^(+-limit / 2)
+    /// within its step; > 0, infinite: by any factor.
+    double gradient_limit = 0.7;
     double extent = 1;  ///< diameter of the scene [m]; footprints are at most a quarter of it
 };
 
@@ -51,7 +39,11 @@ struct PathDifferential {
 /// One more random number. Precondition: fewer than kMost columns.
 void add_variable(PathDifferential& path, const DifferentialColumn& column);
 
-/// The step of a column: its own or the path's, limited where its contribution varies.
+/// Of every number of a path: (samples survival)^(-1 / variables), at most 1, the domain. None: 1.
+/// A step is a full length: the number lies within half of it on either side.
+double global_step(double samples, int variables, double survival);
+
+/// The step of a column: its own share of the path's, limited where its contribution varies.
 double column_step(const PathDifferential& path, const DifferentialRules& rules,
                    const DifferentialColumn& column);
 
@@ -71,9 +63,7 @@ void aim_at_normal(PathDifferential& path, const glm::dmat3& dN_dP);
 struct LobeEvent {
     glm::dvec3 axis{0, 0, 1};  ///< the current direction
     Lobe lobe{};
-    DiskMap map = DiskMap::concentric;
     double u = 0.5, v = 0.5;
-    double step_u = 1, step_v = 1;    ///< local steps; 1 under global ones
     std::optional<glm::dvec3> N_g{};  ///< nothing: in a volume
 };
 
@@ -88,9 +78,7 @@ struct FacetEvent {
     glm::dmat3 dN_dP{0.0};
     double alpha = 0.5;
     double eta = 0;  ///< refraction: index of this side over that of the other; 0: reflection
-    DiskMap map = DiskMap::concentric;
     double u = 0.5, v = 0.5;
-    double step_u = 1, step_v = 1;
     glm::dvec3 N_g{0, 0, 1};
 };
 
@@ -112,7 +100,7 @@ enum class FootprintMode { polygon, filter };
 SurfaceFootprint surface_footprint(const PathDifferential& path, const DifferentialRules& rules,
                                    const glm::dvec3& N_g, FootprintMode mode);
 
-/// The same in texture coordinates; duv_dP: SurfaceShape's.
+/// The same in texture coordinates, which change by duv_dP [1/m] over the surface.
 inline FootprintPair footprint_in_texture(const SurfaceFootprint& footprint,
                                           const glm::dmat3x2& duv_dP) {
     return {duv_dP * footprint.A, duv_dP * footprint.B};

@@ -42,11 +42,6 @@ struct Refraction {
         const double dk = mirror.cosine_change(dD, dN);
         return change_by(dD, dN, square_cosine_change(dk) / (2 * c_t));
     }
-    /// dT/d(eta), dispersion: D - N (k - eta (1 - k^2) / c_t).
-    glm::dvec3 change_with_eta() const {
-        const double k = mirror.k;
-        return mirror.D - mirror.N * (k - eta * (1 - k * k) / c_t);
-    }
 };
 
 /// Nothing under total reflection: the event is a mirror then.

@@ -1,7 +1,6 @@
 #include "bake/path_differentials/visible_normal.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "bake/path_differentials/lobe.h"
 
@@ -13,25 +12,17 @@ glm::dvec3 turned_by(const glm::dvec3& direction, double length, const glm::dvec
     return (dh - direction * glm::dot(direction, dh)) / length;
 }
 
-/// D(m) G1(w_i) / w_i.z = 2 D(m) / (w_i.z + |(a_x w_ix, a_y w_iy, w_iz)|).
-double seen_density(const glm::dvec3& m, double w_iz, double stretched_length,
-                    const MicrofacetWidths& a) {
-    const glm::dvec3 scaled(m.x / a.x, m.y / a.y, m.z);
-    const double square = glm::dot(scaled, scaled);
-    return 2 / (std::numbers::pi * a.x * a.y * square * square * (w_iz + stretched_length));
-}
-
 }  // namespace
 
-VisibleNormal sample_visible_normal(const glm::dvec3& w_i, const MicrofacetWidths& widths,
-                                    DiskMap map, double u, double v) {
+VisibleNormal sample_visible_normal(const glm::dvec3& w_i, const MicrofacetWidths& widths, double u,
+                                    double v) {
     const glm::dvec3 widen(widths.x, widths.y, 1);
     const glm::dvec3 stretched = widen * w_i;
     const double length = glm::length(stretched);
     const glm::dvec3 w = stretched / length;
     const double height = 1 + w.z;
-    const LobeDirection cap = sample_lobe({Lobe::Kind::cap, height}, map, u, v);
-    const DiskPoint disk = map_to_disk(map, u, v);
+    const LobeDirection cap = sample_lobe({Lobe::Kind::cap, height}, u, v);
+    const DiskPoint disk = map_to_disk(u, v);
     const glm::dvec3 half = widen * (cap.D + w);  // not unit
     const double half_length = glm::length(half);
     VisibleNormal normal{.m = half / half_length};
@@ -50,18 +41,7 @@ VisibleNormal sample_visible_normal(const glm::dvec3& w_i, const MicrofacetWidth
         const glm::dvec3 dw = turned_by(w, length, dwi);
         normal.dm_dwi[axis] = column(dw.z * dcap + dw);
     }
-    normal.pdf = seen_density(normal.m, w_i.z, length, widths) * glm::dot(w_i, normal.m);
     return normal;
-}
-
-double pdf_of_reflection(const VisibleNormal& normal, const glm::dvec3& w_i) {
-    return normal.pdf / (4 * glm::dot(w_i, normal.m));
-}
-
-double pdf_of_refraction(const VisibleNormal& normal, const glm::dvec3& w_i, const glm::dvec3& w_o,
-                         double eta) {
-    const double cosine = glm::dot(w_o, normal.m), sum = eta * glm::dot(w_i, normal.m) + cosine;
-    return normal.pdf * std::abs(cosine) / (sum * sum);
 }
 
 }  // namespace opaline::bake

@@ -2,8 +2,6 @@
 
 #include <glm/glm.hpp>
 
-#include "bake/path_differentials/disk_map.h"
-
 namespace opaline::bake {
 
 /// Widths of a GGX distribution of normals along the first two axes of the local frame, in (0, 1].
@@ -12,25 +10,17 @@ struct MicrofacetWidths {
 };
 
 /// A normal m of the microfacets that w_i sees, in the frame whose third axis is the surface's
-/// normal, by a uniform cap of the sphere [Dupuy2023]; and how m moves. All that follows from m is
-/// a mirror or a refraction at N = m, D = -w_i, with dD = -dw_i.
+/// normal, of the density D(m) G1(w_i) (w_i.m) / w_i.z = 1 / |dm_du x dm_dv| by a uniform cap of
+/// the sphere [Dupuy2023]; and how m moves. All that follows from m is a mirror or a refraction at
+/// N = m, D = -w_i, with dD = -dw_i.
 struct VisibleNormal {
     glm::dvec3 m{0, 0, 1};
     glm::dvec3 dm_du{0}, dm_dv{0};
     glm::dmat3 dm_dwi{0.0};  ///< at fixed (u, v)
-    double pdf = 0;          ///< D(m) G1(w_i) (w_i.m) / w_i.z over solid angle of m [1/sr]
 };
 
 /// w_i: unit, away from the surface, w_i.z > 0. u, v as map_to_disk has them.
-VisibleNormal sample_visible_normal(const glm::dvec3& w_i, const MicrofacetWidths& widths,
-                                    DiskMap map, double u, double v);
-
-/// Over solid angle of the direction w_o = 2 (w_i.m) m - w_i: pdf / (4 w_i.m).
-double pdf_of_reflection(const VisibleNormal& normal, const glm::dvec3& w_i);
-
-/// Over solid angle of the refracted direction w_o; eta = index on the side of w_i over the other:
-/// pdf |w_o.m| / (eta w_i.m + w_o.m)^2.
-double pdf_of_refraction(const VisibleNormal& normal, const glm::dvec3& w_i, const glm::dvec3& w_o,
-                         double eta);
+VisibleNormal sample_visible_normal(const glm::dvec3& w_i, const MicrofacetWidths& widths, double u,
+                                    double v);
 
 }  // namespace opaline::bake

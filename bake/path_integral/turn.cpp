@@ -12,11 +12,6 @@ namespace {
 // Below this sine two directions count as opposite; the end of the turn is off by no more.
 constexpr double kOpposite = 1e-12;
 
-// sin(x) / x
-double sinc(double x) {
-    return std::abs(x) < 1e-4 ? 1 - x * x / 6 : std::sin(x) / x;
-}
-
 }  // namespace
 
 Turns::Turns(glm::dvec3 from, glm::dvec3 to) {
@@ -38,13 +33,6 @@ Turns::Turns(glm::dvec3 from, glm::dvec3 to) {
     const glm::dvec3 aside = sine > 0 ? glm::normalize(glm::cross(axis, from)) : glm::dvec3(0);
     // atan2 keeps its digits near 0 and pi, where acos has half of them.
     turn_[0] = {from, aside, to, std::atan2(sine, cosine)};
-}
-
-glm::dvec3 arc_end(const Turn& turn, double ell_total, double scattering) {
-    // 1 - cos(angle) = 2 sin(angle / 2)^2 does not cancel.
-    const double along = sinc(turn.angle);
-    const double lateral = std::sin(turn.angle / 2) * sinc(turn.angle / 2);
-    return ell_total / scattering * (along * turn.from + lateral * turn.aside);
 }
 
 }  // namespace opaline::bake

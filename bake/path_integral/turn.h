@@ -32,9 +32,4 @@ class Turns {
     std::size_t count_ = 1;
 };
 
-/// End of the arc minus its start [m] in a homogeneous medium, where the path turns at a constant
-/// rate: (ell_total / b) (sin(angle) / angle from + (1 - cos(angle)) / angle aside), [Premoze2003]
-/// (8) with (9). `ell_total` >= 0; `scattering` b [1/m], > 0.
-glm::dvec3 arc_end(const Turn& turn, double ell_total, double scattering);
-
 }  // namespace opaline::bake

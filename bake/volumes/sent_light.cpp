@@ -148,9 +148,8 @@ SentPacket draw_rays(const SentLight& light, const Receiver& at, std::uint32_t f
         const std::uint32_t column = cell % light.side, row = cell / light.side;
         const auto random = drawn.random[lane] =
             random_uniform(light.seed, RandomStage::volume_rays, key, cell);
-        const DiskPoint disk =
-            map_to_disk(DiskMap::concentric, (column + static_cast<double>(random[0])) * width,
-                        (row + static_cast<double>(random[1])) * width);
+        const DiskPoint disk = map_to_disk((column + static_cast<double>(random[0])) * width,
+                                           (row + static_cast<double>(random[1])) * width);
         const glm::vec2 d(disk.radius * disk.outward);
         const glm::vec3 direction =
             frame.to_world({d.x, d.y, static_cast<float>(std::sqrt(std::max(0.0, 1 - disk.q)))});

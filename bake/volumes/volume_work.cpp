@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bake/path_integral/path_estimate.h"
+#include "bake/path_integral/probe_depth.h"
 #include "bake/volumes/count_walk.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"

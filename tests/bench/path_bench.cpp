@@ -11,6 +11,7 @@
 
 #include "bake/path_integral/grid_medium.h"
 #include "bake/path_integral/path_estimate.h"
+#include "bake/path_integral/zonal_table.h"
 
 namespace {
 

@@ -103,16 +103,11 @@ class QuarterRays {
   public:
     QuarterRays(const formats::Scene& scene, const RayScene& rays, glm::vec3 origin,
                 std::vector<BounceEnd>& ends)
-        : scene_(scene), rays_(rays), packet_(rays_from(origin)), ends_(ends) {
-        packet_.tfar.fill(std::numeric_limits<float>::infinity());
-    }
+        : scene_(scene), rays_(rays), packet_(rays_from(origin)), ends_(ends) {}
 
     void add(glm::vec3 direction, std::uint32_t quarter) {
-        packet_.dir_x[count_] = direction.x;
-        packet_.dir_y[count_] = direction.y;
-        packet_.dir_z[count_] = direction.z;
+        set_lane(packet_, lanes_, count_, direction);
         quarter_[count_] = quarter;
-        lanes_[count_] = -1;
         if (++count_ == RayPacket::kSize) {
             trace();
         }
@@ -124,9 +119,7 @@ class QuarterRays {
             const PacketHits hits = rays_.closest(lanes_, packet_);
             for (std::size_t lane = 0; lane < count_; ++lane) {
                 if (hits.hit[lane] != 0) {
-                    ends_.push_back(
-                        end_of(scene_, hits, lane,
-                               {packet_.dir_x[lane], packet_.dir_y[lane], packet_.dir_z[lane]}));
+                    ends_.push_back(end_of(scene_, hits, lane, direction_of(packet_, lane)));
                     ends_.back().is_quarter = true;
                     ends_.back().cell = quarter_[lane];
                 }

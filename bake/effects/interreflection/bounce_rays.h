@@ -12,6 +12,7 @@
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
 #include "bake/receivers/receiver_key.h"
+#include "bake/transport/packet_lane.h"
 #include "bake/transport/ray_scene.h"
 
 namespace opaline::bake {
@@ -70,12 +71,8 @@ PacketHits closest_of(const RayScene& scene, std::span<const Ray> rays) {
     RayPacket packet = rays_from({});
     LaneMask lanes{};
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const glm::vec3 origin = rays[i].origin, direction = rays[i].direction;
-        packet.org_x[i] = origin.x, packet.org_y[i] = origin.y, packet.org_z[i] = origin.z;
-        packet.dir_x[i] = direction.x, packet.dir_y[i] = direction.y;
-        packet.dir_z[i] = direction.z;
-        packet.tfar[i] = std::numeric_limits<float>::infinity();
-        lanes[i] = -1;
+        set_origin(packet, i, rays[i].origin);
+        set_lane(packet, lanes, i, rays[i].direction);
     }
     return scene.closest(lanes, packet);
 }
@@ -121,22 +118,17 @@ std::uint64_t trace_bounces(const RayScene& rays, const Receiver& at, const Boun
                 for (std::uint32_t j = 0; j < 2; ++j) {
                     const std::uint32_t lane = i + j;
                     const std::uint32_t across = column + lane % 4, along = row + lane / 4;
-                    const glm::vec3 direction = frame.to_world(
-                        to_hemisphere((static_cast<float>(across) + u[2 * j]) * width,
-                                      (static_cast<float>(along) + u[2 * j + 1]) * width));
-                    packet.dir_x[lane] = direction.x;
-                    packet.dir_y[lane] = direction.y;
-                    packet.dir_z[lane] = direction.z;
-                    packet.tfar[lane] = std::numeric_limits<float>::infinity();
+                    set_lane(packet, lanes, lane,
+                             frame.to_world(to_hemisphere(
+                                 (static_cast<float>(across) + u[2 * j]) * width,
+                                 (static_cast<float>(along) + u[2 * j + 1]) * width)));
                 }
             }
             const PacketHits hits = rays.closest(lanes, packet);
             for (std::size_t lane = 0; lane < RayPacket::kSize; ++lane) {
                 if (hits.hit[lane] != 0) {
                     const std::size_t cell = (row + lane / 4) * grid.side + column + lane % 4;
-                    const glm::vec3 direction{packet.dir_x[lane], packet.dir_y[lane],
-                                              packet.dir_z[lane]};
-                    visit(BounceHit{hits, lane, at.origin, direction, cell});
+                    visit(BounceHit{hits, lane, at.origin, direction_of(packet, lane), cell});
                 }
             }
         }

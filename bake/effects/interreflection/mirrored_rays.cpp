@@ -35,8 +35,8 @@ LobeSample sample_lobe(const formats::Medium& medium, const glm::dvec3& to_eye, 
     const bool is_smooth = alpha < 1e-6;
     const glm::dvec3 m = is_smooth
                              ? glm::dvec3(0, 0, 1)
-                             : sample_visible_normal(to_eye, {alpha, alpha}, DiskMap::concentric,
-                                                     static_cast<double>(u), static_cast<double>(v))
+                             : sample_visible_normal(to_eye, {alpha, alpha}, static_cast<double>(u),
+                                                     static_cast<double>(v))
                                    .m;
     const double cosine = std::clamp(glm::dot(to_eye, m), 0.0, 1.0);
     const glm::dvec3 onward = 2 * cosine * m - to_eye;

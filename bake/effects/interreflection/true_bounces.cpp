@@ -11,6 +11,7 @@
 #include "bake/effects/interreflection/mirrored_rays.h"
 #include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -101,14 +102,7 @@ class TruePath {
     bool meet(glm::vec3 origin, glm::vec3 direction, float side_choice, Receiver& next,
               Rgb& weight) {
         const BounceLight& light = *truth_.light;
-        RayPacket packet = rays_from(origin);
-        packet.dir_x[0] = direction.x;
-        packet.dir_y[0] = direction.y;
-        packet.dir_z[0] = direction.z;
-        packet.tfar[0] = std::numeric_limits<float>::infinity();
-        LaneMask lanes{};
-        lanes[0] = -1;
-        const PacketHits hits = light.rays.closest(lanes, packet);
+        const PacketHits hits = closest_of_one(light.rays, origin, direction);
         ++rays_;
         const SeenSide side = hits.hit[0] != 0 ? side_of_hit(light.scene, hits, 0) : SeenSide{};
         if (hits.hit[0] == 0 && is_mirrored_) {

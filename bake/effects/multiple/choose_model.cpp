@@ -71,12 +71,13 @@ bool scatters_in_peak(const formats::Medium& medium) {
     return std::abs(formats::mean_cosine(medium.phase)) >= kPeaked;
 }
 
+double allowed_error(const Knobs& knobs, double share, const std::array<double, 4>& by_quality) {
+    return knobs.error_target > 0 ? share * knobs.error_target
+                                  : by_quality[static_cast<std::size_t>(knobs.quality)];
+}
+
 double allowed_model_error(const Knobs& knobs) {
-    return knobs.error_target > 0                 ? std::numbers::sqrt2 / 2 * knobs.error_target
-           : knobs.quality == Quality::reference  ? 0.005
-           : knobs.quality == Quality::production ? 0.02
-           : knobs.quality == Quality::preview    ? 0.05
-                                                  : 0.1;
+    return allowed_error(knobs, std::numbers::sqrt2 / 2, {0.1, 0.05, 0.02, 0.005});
 }
 
 // A measurement costs about as much as a bake at draft.
@@ -123,14 +124,14 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
         return choice;
     }
     if (is_measured) {
-        choice.errors = measure_models(inputs, profile, traced);
+        choice.dipole = measure_models(inputs, profile, traced);
     } else if (may_walk && !body.has_thickness()) {
         choice.is_found = true;
         choice.dipole_error = body_error(inputs, profile);
     }
-    const bool has_measured = choice.errors.receivers > 0;
+    const bool has_measured = choice.dipole.receivers > 0;
     if (has_measured) {
-        choice.dipole_error = choice.errors.dipole;
+        choice.dipole_error = choice.dipole.error;
     }
     if (may_walk && has_measured == is_measured && choice.dipole_error > allowed) {
         choice.model = MultipleModel::walks;
@@ -155,29 +156,28 @@ PlanEntry decide_model(const PlanInput& input) {
     entry.bound = effect.on ? error * effect.bound : 0;
     const auto asked = static_cast<MultipleModel>(whole(input.knobs, kMultipleModel));
     const double allowed = allowed_model_error(input.knobs);
+    const auto walk = [&](const std::string& reason) {
+        entry.on = true;
+        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
+        entry.reason = "walks: " + reason;
+    };
     if (asked != MultipleModel::automatic) {
         entry.on = asked != MultipleModel::dipole;
         entry.reason = std::string(kMultipleModel.words[static_cast<std::size_t>(asked)]) +
                        ": as --multiple-model says";
     } else if (input.subject.varies) {
-        entry.on = true;
-        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
-        entry.reason = "walks: the medium varies in space, which other models do not know";
+        walk("the medium varies in space, which other models do not know");
     } else if (is_fixed(medium)) {
         entry.reason = "dipole: the medium names its profile";
     } else if (layered) {
-        entry.on = true;
-        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
-        entry.reason = "walks: it contains other media";
+        walk("it contains other media");
     } else if (!effect.on) {
         entry.reason = "dipole: no light that scatters many times is simulated";
     } else if (is_too_peaked(medium, input.knobs)) {
-        entry.on = true;
-        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
-        entry.reason =
-            "walks: the medium scatters in a peak, which the dipole leaves to terms in the view "
-            "that err by some " +
-            percent(peak_error(medium));
+        walk(
+            "the medium scatters in a peak, which the dipole leaves to terms in the view that err "
+            "by some " +
+            percent(peak_error(medium)));
     } else if (error <= allowed) {
         entry.reason = "dipole: the body is so thick that it errs by some " + percent(error);
     } else if (measures_models(input.knobs)) {
@@ -193,12 +193,8 @@ PlanEntry decide_model(const PlanInput& input) {
             "errs by more than " +
             percent(allowed);
     } else {
-        entry.on = true;
-        entry.choice = kMultipleModel.words[static_cast<std::size_t>(MultipleModel::walks)];
-        entry.reason =
-            "walks: the dipole takes every surface for that of a half space, which "
-            "errs by some " +
-            percent(error);
+        walk("the dipole takes every surface for that of a half space, which errs by some " +
+             percent(error));
     }
     if (effect.on && entry.choice.empty()) {
         entry.choice = asked != MultipleModel::automatic
@@ -220,7 +216,7 @@ void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
     const bool was_on = std::exchange(entry.on, choice.model != MultipleModel::dipole);
     entry.all_orders = choice.model == MultipleModel::walks && choice.all_orders;
     entry.model_error = choice.error();
-    if (choice.errors.receivers == 0) {
+    if (choice.dipole.receivers == 0) {
         if (choice.is_found) {
             entry.reason =
                 std::string(entry.choice) + ": the body is so " + (entry.on ? "thin" : "thick") +
@@ -231,8 +227,8 @@ void describe_choice(const ModelChoice& choice, PlanEntry& entry) {
         return;
     }
     entry.reason =
-        std::string(entry.choice) + ": measured at " + std::to_string(choice.errors.receivers) +
-        " vertices, the dipole differs from random walks by " + percent(choice.errors.dipole);
+        std::string(entry.choice) + ": measured at " + std::to_string(choice.dipole.receivers) +
+        " vertices, the dipole differs from random walks by " + percent(choice.dipole.error);
 }
 
 }  // namespace opaline::bake

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
 #include "bake/effects/multiple/measure_models.h"
-#include "bake/effects/multiple/measure_views.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/plan/effect.h"
 
@@ -12,6 +12,9 @@ namespace opaline::bake {
 
 /// A share in words, "3.1 %".
 std::string percent(double error);
+
+/// A share of Knobs::error_target; without a target, by quality from draft to reference.
+double allowed_error(const Knobs& knobs, double share, const std::array<double, 4>& by_quality);
 
 /// Largest relative RMS error of an automatically chosen model: half of the square of
 /// Knobs::error_target; without a target, by quality.
@@ -32,8 +35,8 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
 /// The model of a body's multiple scattering.
 struct ModelChoice {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
-    ModelErrors errors;
-    ViewErrors views;         ///< of walks, where the number of rows is ours to choose
+    ModelError dipole;                         ///< by measure_models, where it is asked for
+    ModelError views;      ///< of walks, where the number of rows is ours to choose
     bool is_found = false;    ///< dipole_error comes from rays through the body (body_error)
     double dipole_error = 0;  ///< relative RMS, as a share of multiple scattering alone: estimated,
                               ///< found, or measured

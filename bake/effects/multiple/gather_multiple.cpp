@@ -95,15 +95,10 @@ struct Gather {
     }
 };
 
-// The vector of a node or a sample.
-SparseVector entries_of(const ClusterTree& tree, const ClusterWeight& w) {
-    const std::size_t nodes = tree.nodes.size();
-    return w.id < nodes ? tree.sums[w.id] : tree.samples[w.id - nodes];
-}
-
-SparseVector other_entries_of(const ClusterTree& tree, const ClusterWeight& w) {
-    const std::size_t nodes = tree.nodes.size();
-    return w.id < nodes ? tree.other_sums[w.id] : tree.other_samples[w.id - nodes];
+// The vector of a node, of which there are as many as sums, or a sample.
+SparseVector entries_of(const SparseVectors& sums, const SparseVectors& samples,
+                        const ClusterWeight& w) {
+    return w.id < sums.size() ? sums[w.id] : samples[w.id - sums.size()];
 }
 
 // Adds weight * entries of other light, of one band or three.
@@ -111,7 +106,7 @@ void add_other(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                std::span<float> rgbx) {
     const std::size_t bands = tree.other_samples.bands;
     for (const ClusterWeight& w : weights) {
-        const SparseVector entries = other_entries_of(tree, w);
+        const SparseVector entries = entries_of(tree.other_sums, tree.other_samples, w);
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
             for (std::size_t b = 0; b < 3; ++b) {
@@ -126,7 +121,7 @@ void add_other_grey(const ClusterTree& tree, std::span<const ClusterWeight> weig
     constexpr std::array<float, 3> kLuminance{0.2126f, 0.7152f, 0.0722f};
     const std::size_t bands = tree.other_samples.bands;
     for (const ClusterWeight& w : weights) {
-        const SparseVector entries = other_entries_of(tree, w);
+        const SparseVector entries = entries_of(tree.other_sums, tree.other_samples, w);
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             for (std::size_t b = 0; b < bands; ++b) {
                 const float share = bands == 1 ? 1 : kLuminance[b];
@@ -184,8 +179,8 @@ void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                 std::span<float> rgbx) {
     std::fill(rgbx.begin(), rgbx.end(), 0.0f);
     for (const ClusterWeight& w : weights) {
-        add_entries(entries_of(tree, w), Float4{w.weight[0], w.weight[1], w.weight[2], 0.0f},
-                    rgbx.data());
+        add_entries(entries_of(tree.sums, tree.samples, w),
+                    Float4{w.weight[0], w.weight[1], w.weight[2], 0.0f}, rgbx.data());
     }
     if (tree.other_samples.size() > 0) {
         add_other(tree, weights, rgbx);
@@ -196,7 +191,7 @@ void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> wei
                      std::span<float> sums) {
     std::fill(sums.begin(), sums.end(), 0.0f);
     for (const ClusterWeight& w : weights) {
-        add_entries(entries_of(tree, w), w.weight[0], sums.data());
+        add_entries(entries_of(tree.sums, tree.samples, w), w.weight[0], sums.data());
     }
     if (tree.other_samples.size() > 0) {
         add_other_grey(tree, weights, sums);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bake/plan/plan_input.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_medium.h"
 #include "formats/media/mean_cosine.h"
@@ -11,10 +12,6 @@ namespace opaline::bake {
 namespace {
 
 using formats::Medium;
-
-double band_of(const formats::Rgb& c, std::size_t band) {
-    return static_cast<double>(band == 0 ? c.r : band == 1 ? c.g : c.b);
-}
 
 Profile make_profile(Medium::Profile kind, bool paper, double sigma_s_prime, double sigma_a,
                      double eta) {
@@ -43,10 +40,10 @@ MediumProfile make_medium_profile(const Medium& medium, std::uint64_t seed,
     const double escape = 1 - fresnel_moments(profile.eta).external;
     profile.exit = paper ? 1 : escape;
     double smallest = HUGE_VAL;
+    const auto bands = bands_of(medium);
     for (std::size_t b = 0; b < 3; ++b) {
-        const double sigma_s = band_of(medium.sigma_s, b), sigma_a = band_of(medium.sigma_a, b);
-        if (b > 0 && sigma_s == band_of(medium.sigma_s, b - 1) &&
-            sigma_a == band_of(medium.sigma_a, b - 1)) {
+        const auto [sigma_s, sigma_a] = bands[b];
+        if (b > 0 && sigma_s == bands[b - 1].sigma_s && sigma_a == bands[b - 1].sigma_a) {
             profile.band[b] = profile.band[b - 1];
             profile.scale[b] = profile.scale[b - 1];
             continue;

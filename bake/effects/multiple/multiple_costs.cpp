@@ -10,6 +10,7 @@
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/walk_costs.h"
+#include "bake/plan/plan_input.h"
 #include "bake/plan/walk_work.h"
 #include "bake/receivers/kd_order.h"
 #include "bake/scattering/dipole.h"
@@ -34,19 +35,23 @@ double texels(std::uint32_t n) {
     return static_cast<double>(formats::cubemap_texels(n));
 }
 
-// Coefficients that a sample or node keeps; those below its horizon vanish.
-double kept_by_samples(const Knobs& knobs) {
-    return std::min(static_cast<double>(sample_coefficients(knobs)), texels(knobs.cubemap_size));
-}
-
 std::array<Dipole, 3> dipoles_of(const formats::Medium& medium) {
     const double g = formats::mean_cosine(medium.phase);
-    const auto make = [&](float sigma_s, float sigma_a) {
-        return make_dipole(DipoleKind::better, (1 - g) * static_cast<double>(sigma_s),
-                           static_cast<double>(sigma_a), static_cast<double>(medium.eta));
+    const auto make = [&](const Band& band) {
+        return make_dipole(DipoleKind::better, (1 - g) * band.sigma_s, band.sigma_a,
+                           static_cast<double>(medium.eta));
     };
-    return {make(medium.sigma_s.r, medium.sigma_a.r), make(medium.sigma_s.g, medium.sigma_a.g),
-            make(medium.sigma_s.b, medium.sigma_a.b)};
+    const auto bands = bands_of(medium);
+    return {make(bands[0]), make(bands[1]), make(bands[2])};
+}
+
+// Depth of the source of the densest band that returns light; infinite: there is none.
+double least_depth(const std::array<Dipole, 3>& dipoles) {
+    double depth = HUGE_VAL;
+    for (const Dipole& d : dipoles) {
+        depth = dipole_total(d) > 0 ? std::min(depth, d.z_real) : depth;
+    }
+    return depth;
 }
 
 }  // namespace
@@ -58,10 +63,7 @@ double expected_samples(const formats::Medium& medium, double area, const Knobs&
     if (knobs.is_given(kSamples)) {
         return most;
     }
-    double depth = HUGE_VAL;
-    for (const Dipole& d : dipoles_of(medium)) {
-        depth = dipole_total(d) > 0 ? std::min(depth, d.z_real) : depth;
-    }
+    const double depth = least_depth(dipoles_of(medium));
     return std::clamp(per_path * area / (depth * depth), std::min(least, most), most);
 }
 
@@ -74,10 +76,7 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
     // Rings, evenly spaced in the logarithm of their radius.
     constexpr int kRings = 48;
     const auto dipoles = dipoles_of(medium);
-    double smallest = HUGE_VAL;
-    for (const Dipole& d : dipoles) {
-        smallest = dipole_total(d) > 0 ? std::min(smallest, d.z_real) : smallest;
-    }
+    const double smallest = least_depth(dipoles);
     if (!std::isfinite(smallest)) {
         return 0;
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "bake/effects/multiple/gather_multiple.h"
@@ -23,21 +23,17 @@ std::uint32_t kept_of(const MultipleOptions& options) {
     return OtherLight::has_environment(options.light) ? options.kept : kAllCoefficients;
 }
 
-double scene_diagonal(const formats::Scene& scene, std::span<const std::uint32_t> primitives) {
+// Of all materials or one.
+double diagonal_of(const formats::Scene& scene, std::optional<std::uint32_t> material) {
     glm::dvec3 low(HUGE_VAL), high(-HUGE_VAL);
-    for (const std::uint32_t p : primitives) {
-        for (const glm::vec3 x : scene.primitives[p].position) {
-            low = glm::min(low, glm::dvec3(x));
-            high = glm::max(high, glm::dvec3(x));
+    for (const formats::Primitive& p : scene.primitives) {
+        for (std::size_t v = 0;
+             v < p.position.size() && p.material == material.value_or(p.material); ++v) {
+            low = glm::min(low, glm::dvec3(p.position[v]));
+            high = glm::max(high, glm::dvec3(p.position[v]));
         }
     }
     return glm::length(high - low);
-}
-
-std::vector<std::uint32_t> all_primitives(const formats::Scene& scene) {
-    std::vector<std::uint32_t> all(scene.primitives.size());
-    std::iota(all.begin(), all.end(), 0u);
-    return all;
 }
 
 // T_d as the dipole has it, times a factor per band; overwritten.
@@ -91,13 +87,13 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
         .walks = walks,
         .is_inside = is_inside,
         .views = options.views,
-        .rows = {.cubemap_size = options.cubemap_size,
-                 .kept = kept_of(options),
-                 .bands = options.bands,
-                 .seed = options.seed,
-                 .orders = {options.all_orders ? 1u : 2u,
-                            !options.all_orders && options.light != nullptr,
-                            options.fills_crossed}}};
+        .rows = {
+            .cubemap_size = options.cubemap_size,
+            .kept = kept_of(options),
+            .bands = options.bands,
+            .seed = options.seed,
+            .orders = {options.all_orders ? 1u : 2u,
+                       !options.all_orders && options.light != nullptr, options.fills_crossed}}};
     const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));
     std::function<void(std::size_t, std::span<float>)> subtract;
@@ -143,14 +139,13 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     const std::vector<SurfaceSample> samples =
         sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
-    stage.profile =
-        make_gather_profile(stage.medium, std::sqrt(per_sample),
-                            scene_diagonal(scene, all_primitives(scene)), options.bands);
+    stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample),
+                                        diagonal_of(scene, std::nullopt), options.bands);
     const bool walks = options.model == MultipleModel::walks;
     stage.model = options.model;
     SitePlan plan;
     if (walks) {
-        plan = plan_sites(area, scene_diagonal(scene, primitives), path, options.walks);
+        plan = plan_sites(area, diagonal_of(scene, material), path, options.walks);
         plan.is_residual = plan.is_residual && !options.layered;
     }
     const bool walks_alone = walks && !plan.is_residual;

@@ -28,6 +28,12 @@ double half_space_bound(const Medium& medium, const Band& band) {
                                         static_cast<double>(medium.eta)));
 }
 
+// Bound on the share of light along a line of length `diagonal` [m] that scatters once.
+double once_bound(const Band& band, double diagonal) {
+    const double sigma_t = band.sigma_s + band.sigma_a;
+    return sigma_t > 0 ? band.sigma_s / sigma_t * -std::expm1(-sigma_t * diagonal) : 0;
+}
+
 }  // namespace
 
 double small_body_bound(const Medium& medium, const Band& band, double diagonal, double area) {
@@ -37,8 +43,8 @@ double small_body_bound(const Medium& medium, const Band& band, double diagonal,
     if (!(band.sigma_s > 0)) {
         return 0;
     }
-    const double sigma_t = band.sigma_s + band.sigma_a, albedo = band.sigma_s / sigma_t;
-    const double once = albedo * -std::expm1(-sigma_t * diagonal);
+    const double albedo = band.sigma_s / (band.sigma_s + band.sigma_a);
+    const double once = once_bound(band, diagonal);
     const double reduced = (1 - formats::mean_cosine(medium.phase)) * band.sigma_s;
     const auto dipole_of = [&](DipoleKind kind) {
         return make_dipole(kind, reduced, band.sigma_a, 1);
@@ -65,14 +71,9 @@ PlanEntry decide_multiple(const PlanInput& input) {
         entry.bound = std::max(
             entry.bound,
             std::min(half_space, small_body_bound(medium, band, diagonal, input.subject.area)));
-    }
-    if (input.subject.varies) {
-        // Walks of a medium that varies carry light that scatters once as well.
-        for (const Band& band : bands_of(medium)) {
-            const double sigma_t = band.sigma_s + band.sigma_a;
-            const double once =
-                sigma_t > 0 ? band.sigma_s / sigma_t * -std::expm1(-sigma_t * diagonal) : 0;
-            entry.bound = std::max(entry.bound, once);
+        if (input.subject.varies) {
+            // Walks of a medium that varies carry light that scatters once as well.
+            entry.bound = std::max(entry.bound, once_bound(band, diagonal));
         }
     }
     // What goes through media inside is at most the light that reaches them.

@@ -68,23 +68,23 @@ PlanEntry decide_spread(const PlanInput& input) {
                                                 spread_of_one_event(band, eta, shape));
     }
     entry.bound = std::min(entry.bound, 1.0);
+    const auto has_earlier = [&](auto&& is_such) {
+        return std::ranges::any_of(input.earlier, is_such);
+    };
     if (input.knobs.separate_terms) {
         entry.reason = "multiple and single scattering are asked for apart";
     } else if (subject.varies) {
         entry.bound = 1;
         entry.reason =
             "the medium varies in space: light that leaves where it entered has no one colour";
-    } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
-                           [](const PlanEntry& e) { return e.on && e.terms > 1; })) {
+    } else if (has_earlier([](const PlanEntry& e) { return e.on && e.terms > 1; })) {
         entry.reason = "the rows depend on the view";
     } else if (medium.sigma_s == formats::Rgb{}) {
         entry.reason = "what crosses the body unscattered leaves elsewhere than where it entered";
-    } else if (std::any_of(input.earlier.begin(), input.earlier.end(),
-                           [](const PlanEntry& e) { return e.on && e.layered; })) {
+    } else if (has_earlier([](const PlanEntry& e) { return e.on && e.layered; })) {
         entry.reason = "light goes through other media inside";
     } else if (scatters_in_peak(medium) &&
-               std::any_of(input.earlier.begin(), input.earlier.end(),
-                           [](const PlanEntry& e) { return e.on && e.all_orders; })) {
+               has_earlier([](const PlanEntry& e) { return e.on && e.all_orders; })) {
         entry.reason = "light that scatters in a peak leaves by random walks alone";
     } else if (!is_worth(entry.bound, input, entry.forced)) {
         entry.on = false;

@@ -8,6 +8,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
+#include "bake/plan/plan_input.h"
 #include "bake/receivers/used_vertices.h"
 #include "bake/transport/body.h"
 #include "bake/truth/draw_receivers.h"
@@ -31,13 +32,10 @@ std::array<double, 3> transport_lengths(const formats::Medium& medium,
     constexpr double kLeastShare = 0.1;
     const double g = formats::mean_cosine(medium.phase);
     const double most = std::max({profile.total(0), profile.total(1), profile.total(2)});
-    const std::array<formats::Rgb, 2> sigma{medium.sigma_s, medium.sigma_a};
+    const auto bands = bands_of(medium);
     std::array<double, 3> lengths{};
     for (std::size_t b = 0; b < 3; ++b) {
-        const auto of_band = [b](const formats::Rgb& c) {
-            return static_cast<double>(b == 0 ? c.r : b == 1 ? c.g : c.b);
-        };
-        const double extinction = (1 - g) * of_band(sigma[0]) + of_band(sigma[1]);
+        const double extinction = (1 - g) * bands[b].sigma_s + bands[b].sigma_a;
         if (extinction > 0 && profile.total(b) > 0 && profile.total(b) >= kLeastShare * most) {
             lengths[b] = 1 / extinction;
         }

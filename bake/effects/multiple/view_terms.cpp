@@ -22,20 +22,12 @@ namespace {
 // Three more rows cost time and memory. From production on nearly all bodies have them, because
 // thin parts of a body err by more than the estimate for the whole (walks/README.md, "Views").
 double allowed_view_error(const Knobs& knobs) {
-    return knobs.error_target > 0                 ? 0.3 * knobs.error_target
-           : knobs.quality == Quality::reference  ? 0.005
-           : knobs.quality == Quality::production ? 0.005
-           : knobs.quality == Quality::preview    ? 0.05
-                                                  : 0.2;
+    return allowed_error(knobs, 0.3, {0.2, 0.05, 0.005, 0.005});
 }
 
 // Five rows more cost time, memory and noise (walks/README.md, "Views").
 double allowed_curvature(const Knobs& knobs) {
-    return knobs.error_target > 0                 ? 0.3 * knobs.error_target
-           : knobs.quality == Quality::reference  ? 0.01
-           : knobs.quality == Quality::production ? 0.03
-           : knobs.quality == Quality::preview    ? 0.1
-                                                  : 0.2;
+    return allowed_error(knobs, 0.3, {0.2, 0.1, 0.03, 0.01});
 }
 
 // 1 - sqrt(1 - a) H(c') (Chandrasekhar) is the radiance inside a half space under even light, a the
@@ -210,14 +202,14 @@ bool measures_views(const Knobs& knobs) {
            whole(knobs, kViewTerms) == 0 && !knobs.separate_terms;
 }
 
-void amend_views(const ViewErrors& measured, const EffectInputs& inputs, PlanEntry& entry) {
+void amend_views(const ModelError& measured, const EffectInputs& inputs, PlanEntry& entry) {
     if (measured.receivers == 0) {
         return;
     }
     const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
     const bool is_known = body.has_thickness();
     const double one =
-        std::max(measured.one, is_known ? one_view_error(inputs.medium(), body) : 0.0);
+        std::max(measured.error, is_known ? one_view_error(inputs.medium(), body) : 0.0);
     // What four leave is too small a difference to be measured so.
     const double four = is_known ? four_views_error(inputs.medium(), body) : 0;
     const std::uint32_t rows = rows_for(four, inputs.knobs);

@@ -25,11 +25,6 @@ constexpr double kExitsPerWalk = 1.5;  // measured at indices from 1.3 to 1.5
 constexpr double kCellEntries = 250;   // an exit's lobe in 96 cells, in entries of a row
 constexpr double kOwnSample = 0.6;     // exits that share their sample with none of the site's
 
-double kept(const Knobs& knobs) {
-    return std::min(static_cast<double>(sample_coefficients(knobs)),
-                    static_cast<double>(formats::cubemap_texels(knobs.cubemap_size)));
-}
-
 WalkBudget budget_of(const Knobs& knobs) {
     return {knobs[kWalksAround], knobs[kWalks], whole(knobs, kSites)};
 }
@@ -76,6 +71,11 @@ double count_steps(const formats::Medium& medium, const MaterialFacts& body) {
 
 }  // namespace
 
+double kept_by_samples(const Knobs& knobs) {
+    return std::min(static_cast<double>(sample_coefficients(knobs)),
+                    static_cast<double>(formats::cubemap_texels(knobs.cubemap_size)));
+}
+
 SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body,
                         const Knobs& knobs) {
     const auto diagonal = static_cast<double>(glm::length(body.high - body.low));
@@ -108,7 +108,8 @@ Work walks_work(const SubjectCost& cost) {
     const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
                                   static_cast<double>(plan.sites));
     const double views = are_inside(cost, plan) ? 0 : rows_by_view(cost.layout);
-    const double entries = kOwnSample * (kCellEntries + (1 + views) * kept(knobs)) * kGatherEntry;
+    const double entries =
+        kOwnSample * (kCellEntries + (1 + views) * kept_by_samples(knobs)) * kGatherEntry;
     const double dense = static_cast<double>(formats::cubemap_texels(knobs.cubemap_size));
     // Measured on Spot: an event with veins to evaluate takes as long as three without.
     const auto& variation = cost.medium().variation;
@@ -131,16 +132,17 @@ Work walked_rows_work(const SubjectCost& cost) {
         const double wider =
             inner_radius(plan, shortest_path(cost.medium(), cost.facts)) / plan.radius;
         const double seen = std::min(wider * wider * sites, static_cast<double>(plan.sites));
-        return {0, cost.receivers * (kFirstFlight.at(cost.input.triangles) +
-                                     seen * (kInnerSite.at(cost.input.triangles) +
-                                             (1 + rows_by_view(cost.layout)) *
-                                                 kept(cost.input.knobs) * kGatherEntry))};
+        return {0,
+                cost.receivers * (kFirstFlight.at(cost.input.triangles) +
+                                  seen * (kInnerSite.at(cost.input.triangles) +
+                                          (1 + rows_by_view(cost.layout)) *
+                                              kept_by_samples(cost.input.knobs) * kGatherEntry))};
     }
     // By view: four times as many sites, of each three or eight rows with a quarter of the entries.
     const double views = rows_by_view(cost.layout);
     return {0, cost.receivers * sites *
                    ((views > 0 ? 5 : 1) * kSiteWeight +
-                    (1 + views) * kept(cost.input.knobs) * kGatherEntry)};
+                    (1 + views) * kept_by_samples(cost.input.knobs) * kGatherEntry)};
 }
 
 }  // namespace opaline::bake

@@ -8,6 +8,9 @@ namespace opaline::bake {
 /// Seconds of a sample: its place (blue noise); a texel of its transform and truncation.
 inline constexpr double kPlaceSample = 1e-5, kTruncateTexel = 5.1e-9;
 
+/// Coefficients that a sample or node keeps; those below its horizon vanish.
+double kept_by_samples(const Knobs& knobs);
+
 /// Where walks are expected to start.
 SitePlan expected_sites(const formats::Medium& medium, const MaterialFacts& body,
                         const Knobs& knobs);

@@ -7,6 +7,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -86,13 +87,8 @@ bool lies_inside(const RayScene& rays, std::uint32_t material, const Triangle& t
         const glm::vec3 origin = weight.x * a + weight.y * b + weight.z * c + clear * normal;
         for (std::size_t r = 0; r < kRays; ++r) {
             const std::size_t lane = p * kRays + r;
-            packet.org_x[lane] = origin.x;
-            packet.org_y[lane] = origin.y;
-            packet.org_z[lane] = origin.z;
-            packet.dir_x[lane] = direction[r].x;
-            packet.dir_y[lane] = direction[r].y;
-            packet.dir_z[lane] = direction[r].z;
-            lanes[lane] = -1;
+            set_origin(packet, lane, origin);
+            set_lane(packet, lanes, lane, direction[r]);
         }
     }
     const auto shells = count_shells(rays, material, lanes, packet);

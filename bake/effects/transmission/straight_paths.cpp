@@ -7,6 +7,7 @@
 #include "bake/scattering/entry.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/transport/body.h"
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -95,11 +96,8 @@ class Follower {
         bool any = false;
         for (std::uint32_t i = 0; i < kLanes; ++i) {
             const Lane& lane = lanes_[i];
-            packet.org_x[i] = lane.position.x, packet.org_y[i] = lane.position.y;
-            packet.org_z[i] = lane.position.z;
-            packet.dir_x[i] = lane.direction.x, packet.dir_y[i] = lane.direction.y;
-            packet.dir_z[i] = lane.direction.z;
-            packet.tfar[i] = lane.is_on_its_way ? reach_of(lane) : 0;
+            set_origin(packet, i, lane.position);
+            set_lane(packet, mask, i, lane.direction, lane.is_on_its_way ? reach_of(lane) : 0);
             mask[i] = lane.is_on_its_way ? -1 : 0;
             any = any || lane.is_on_its_way;
             traced_ += lane.is_on_its_way ? 1 : 0;
@@ -198,11 +196,8 @@ class Follower {
             LaneMask mask{};
             for (std::size_t i = 0; i < count; ++i) {
                 const StraightExit& e = escapes_[begin + i];
-                packet.org_x[i] = e.origin.x, packet.org_y[i] = e.origin.y;
-                packet.org_z[i] = e.origin.z;
-                packet.dir_x[i] = e.direction.x, packet.dir_y[i] = e.direction.y;
-                packet.dir_z[i] = e.direction.z;
-                mask[i] = -1;
+                set_origin(packet, i, e.origin);
+                set_lane(packet, mask, i, e.direction);
             }
             if (!body_.sky->is_empty()) {
                 body_.sky->occluded(mask, packet);

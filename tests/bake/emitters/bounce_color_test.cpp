@@ -27,17 +27,6 @@ TEST(BounceColor, OfAnOpaqueSurfaceIsItsBaseColourInFront) {
     EXPECT_NEAR(bounce_color(scene, {0, 0}, kMiddle).reflect.y, 0.1, 1e-6);
 }
 
-TEST(BounceColor, ImageAndVertexColoursMultiply) {
-    formats::Scene scene = coloured_quad();
-    scene.images.push_back({1, 1, {255, 0, 255, 255}});
-    scene.materials[0].base_color_image = 0;
-    scene.primitives[0].texcoord.assign(4, glm::vec2(0.5f));
-    scene.primitives[0].color.assign(4, {0.5f, 0.5f, 0.5f});
-    const glm::dvec3 reflect = bounce_color(scene, {0, 3}, kMiddle).reflect;
-    EXPECT_NEAR(reflect.x, 0.4, 1e-6);
-    EXPECT_EQ(reflect.y, 0);
-}
-
 TEST(BounceColor, ThinWallsPassAShareToTheOtherSideAndMediaKeepAll) {
     formats::Scene scene = coloured_quad();
     scene.materials[0].sheet = formats::Sheet{{0.5f, 0.5f, 0.5f}, {0.25f, 0.25f, 0.25f}};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <numbers>
 #include <utility>
@@ -7,6 +9,8 @@
 
 #include "bake/emitters/lamp_sources.h"
 #include "bake/emitters/lamps.h"
+#include "bake/emitters/receiver_light.h"
+#include "bake/emitters/trace_particles.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/transport/ray_scene.h"
@@ -62,5 +66,53 @@ inline std::vector<bake::LampSources> all_sources(const Scene& scene) {
     }
     return sources;
 }
+
+/// Form factor of a point beside the corner of a parallel rectangle x by y at distance 1.
+inline double corner_factor(double x, double y) {
+    const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
+    return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * std::numbers::pi);
+}
+/// Irradiance at (s, t) from the parallel unit square of exitance 1 at distance 1.
+inline double square_irradiance(double s, double t) {
+    return corner_factor(1 - s, 1 - t) + corner_factor(s, 1 - t) + corner_factor(1 - s, t) +
+           corner_factor(s, t);
+}
+
+/// Everything that rows of a scene are made from: the light that particles of its lamps leave.
+struct LampWorld {
+    LampWorld(Scene given, double finest, bake::ParticleRun run)
+        : scene(std::move(given)), layout(scene, finest) {
+        std::uint64_t traced = 0;
+        for (run.lamp = 0; run.lamp < sources.size(); ++run.lamp) {
+            const bake::ParticleLight light =
+                bake::trace_particles(scene, rays, sources[run.lamp], layout, run, {}, traced);
+            elements.push_back(layout.join(light.all, bake::kGatheredElements));
+            caustics.push_back(light.caustic.empty()
+                                   ? bake::ElementLight{}
+                                   : layout.join(light.caustic, bake::kCausticElements));
+        }
+    }
+    bake::LampLight light(std::uint32_t samples = 256) const {
+        return {scene, rays, sources, layout, elements, samples, 0, nullptr, nullptr, caustics};
+    }
+    glm::dvec3 at(const bake::Receiver& receiver) const {
+        std::uint64_t traced = 0;
+        return bake::receive_light(light(64), receiver, 1, traced)[0];
+    }
+    std::vector<std::vector<formats::Rgb>> rows(std::uint32_t primitive, std::uint32_t terms = 1,
+                                                unsigned threads = 1) const {
+        bake::Context context;
+        context.threads = threads;
+        std::uint64_t traced = 0;
+        return bake::make_lamp_rows(light(), receivers[primitive], terms, context, traced);
+    }
+
+    Scene scene;
+    bake::ElementLayout layout;
+    bake::RayScene rays = build_rays(scene);
+    std::vector<bake::LampSources> sources = all_sources(scene);
+    std::vector<bake::ReceiverSet> receivers = receivers_of(scene);
+    std::vector<bake::ElementLight> elements, caustics;
+};
 
 }  // namespace opaline::tests

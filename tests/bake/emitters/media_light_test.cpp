@@ -49,13 +49,6 @@ TEST(MediaLight, IsMixedOverTrianglesAndStartsWithItsPower) {
     EXPECT_TRUE(MediaLight{{{}}}.empty());
 }
 
-TEST(MediaLight, BasisHasAColumnForEachLamp) {
-    EXPECT_EQ(lamp_basis(1), 1u);
-    EXPECT_EQ(lamp_basis(6), 1u);
-    EXPECT_EQ(lamp_basis(7), 2u);
-    EXPECT_EQ(lamp_basis(64), 4u);
-}
-
 // The light of a lamp stands in its column, red, green and blue apart.
 TEST(MediaLight, ColumnsHoldIrradiance) {
     formats::Scene scene = square_of_wax();

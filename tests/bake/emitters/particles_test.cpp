@@ -39,15 +39,6 @@ double sum_of(const Power& power, std::size_t first, std::size_t end) {
                            [](double sum, const ElementDeposit& of) { return sum + of.power.x; });
 }
 
-/// Irradiance at (s, t) from the parallel unit square of exitance 1 at distance 1.
-double irradiance_across(double s, double t) {
-    const auto corner = [](double x, double y) {
-        const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
-        return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * std::numbers::pi);
-    };
-    return corner(1 - s, 1 - t) + corner(s, 1 - t) + corner(1 - s, t) + corner(s, t);
-}
-
 /// RMS error of irradiance on the upper square over RMS irradiance, at 96 x 96 points.
 double relative_error(const formats::Scene& scene, const ElementLayout& layout,
                       const Power& power) {
@@ -61,7 +52,7 @@ double relative_error(const formats::Scene& scene, const ElementLayout& layout,
             const glm::dvec3 weights =
                 is_first ? glm::dvec3(1 - s, s - t, t) : glm::dvec3(1 - t, s, t - s);
             const std::size_t element = layout.element({1, is_first ? 0u : 3u}, weights);
-            const double exact = irradiance_across(t, s);
+            const double exact = tests::square_irradiance(t, s);
             const double found = double{irradiance[element].x};
             error += (found - exact) * (found - exact);
             square += exact * exact;
@@ -119,7 +110,7 @@ TEST(ParticleRadiosity, SmallTrianglesAreNoNoisierThanLargeOnes) {
                                                       : glm::dvec3(1 - at.y, at.x, at.y - at.x);
             const std::uint32_t first = i == 1 ? 6 * q : at.x >= at.y ? 0 : 3;
             const double found = double{irradiance[layout.element({1, first}, weights)].x};
-            const double exact = irradiance_across(at.y, at.x);
+            const double exact = tests::square_irradiance(at.y, at.x);
             square += (found / exact - 1) * (found / exact - 1);
         }
         error[i] = std::sqrt(square / (cells * cells));

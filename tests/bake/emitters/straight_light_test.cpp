@@ -14,16 +14,6 @@ namespace {
 
 using formats::Light;
 
-/// Factor of irradiance from exitance between a point and a unit square that faces it at distance
-/// 1: corners' sums.
-double square_factor(double s, double t) {
-    const auto corner = [](double x, double y) {
-        const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
-        return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * std::numbers::pi);
-    };
-    return corner(1 - s, 1 - t) + corner(s, 1 - t) + corner(1 - s, t) + corner(s, t);
-}
-
 glm::dvec3 receive(const formats::Scene& scene, const Receiver& receiver,
                    std::uint32_t samples = 64) {
     const RayScene rays = tests::build_rays(scene);
@@ -51,7 +41,7 @@ TEST(TriangleIrradiance, OfASquareIsTheClosedForm) {
         for (const GlowingTriangle& triangle : sources[0].triangles) {
             sum += triangle_irradiance(triangle, {s, t, 1}, {0, 0, -1}) * triangle.radiance.x;
         }
-        EXPECT_NEAR(sum, square_factor(s, t), 1e-6) << s << ' ' << t;
+        EXPECT_NEAR(sum, tests::square_irradiance(s, t), 1e-6) << s << ' ' << t;
     }
 }
 
@@ -80,7 +70,7 @@ TEST(TriangleIrradiance, CountsThePartAboveTheHorizon) {
 TEST(StraightLight, UnoccludedSquareIsExactWithOneSample) {
     const formats::Scene scene = tests::parallel_squares();
     const glm::dvec3 E = receive(scene, {{0.3f, 0.4f, 0.9999f}, {0, 0, -1}}, 1);
-    EXPECT_NEAR(E.x, square_factor(0.3, 0.4), 1e-3);
+    EXPECT_NEAR(E.x, tests::square_irradiance(0.3, 0.4), 1e-3);
 }
 
 // The far quarter of the lamp is hidden.
@@ -89,11 +79,7 @@ TEST(StraightLight, PenumbraIsTheVisiblePart) {
     tests::add_surface(scene, tests::make_quad({0.25f, 0.25f, 0.5f}, {10, 0, 0}, {0, 10, 0}), 0);
     scene.primitives[1].position = {{5, 5, 5}, {5, 6, 5}, {6, 5, 5}, {6, 6, 5}};
     // From (0, 0, 1) the blocker's corner is seen at (1/2, 1/2) of the lamp.
-    const auto rectangle = [](double x, double y) {
-        const double rx = std::sqrt(1 + x * x), ry = std::sqrt(1 + y * y);
-        return (x / rx * std::atan(y / rx) + y / ry * std::atan(x / ry)) / (2 * std::numbers::pi);
-    };
-    const double seen = 2 * rectangle(0.5, 1) - rectangle(0.5, 0.5);
+    const double seen = 2 * tests::corner_factor(0.5, 1) - tests::corner_factor(0.5, 0.5);
     EXPECT_NEAR(receive(scene, {{0, 0, 1}, {0, 0, -1}}, 4096).x, seen, 0.01 * seen);
 }
 

@@ -6,9 +6,7 @@
 
 #include "bake/emitters/bounce_color.h"
 #include "bake/emitters/media_light.h"
-#include "bake/emitters/receiver_light.h"
 #include "bake/emitters/straight_light.h"
-#include "bake/emitters/trace_particles.h"
 #include "bake/scene/texture_pyramid.h"
 #include "tests/bake/emitters/lamp_scenes.h"
 
@@ -44,16 +42,11 @@ formats::Scene floor_under_ceiling(float albedo) {
 std::vector<double> returned_light(const formats::Scene& scene, bool is_filtered) {
     const ScenePyramids textures = make_scene_pyramids(scene);
     const ScenePyramids* const used = is_filtered ? &textures : nullptr;
-    const RayScene rays = tests::build_rays(scene);
-    const auto sources = tests::all_sources(scene);
-    const ElementLayout layout(scene, 0.05);
+    const tests::LampWorld world(scene, 0.05, {20000, 0, 0, 0, used});
+    LampLight light = world.light(64);
+    light.textures = used;
     std::uint64_t traced = 0;
-    const std::vector<ElementLight> elements{
-        layout.join(trace_particles(scene, rays, sources.at(0), layout, {20000, 0, 0, 0, used},
-                                    Context{}, traced)
-                        .all)};
-    const LampLight light{scene, rays, sources, layout, elements, 64, 0, nullptr, used};
-    const auto rows = make_lamp_rows(light, tests::receivers_of(scene)[0], 1, Context{}, traced);
+    const auto rows = make_lamp_rows(light, world.receivers[0], 1, Context{}, traced);
     std::vector<double> green;
     for (const formats::Rgb c : rows.at(0)) {
         green.push_back(static_cast<double>(c.g));

@@ -102,12 +102,10 @@ TEST(BounceGather, FootprintIsThatOfThePathDifferential) {
     for (std::uint32_t i = 0; i < 200; ++i) {
         const Met met(i);
         PathDifferential path;
-        DifferentialRules rules;
-        rules.extent = 1e6;
+        const DifferentialRules rules{.samples = 1 / (Met::h * Met::h), .extent = 1e6};
         LobeEvent event;
         event.u = met.uv.x;
         event.v = met.uv.y;
-        event.step_u = event.step_v = Met::h;
         const glm::dvec3 D = scatter_in_lobe(path, rules, event);
         const glm::dvec3 N_g(met.normal);
         move_to_surface(path, D, N_g, met.t);

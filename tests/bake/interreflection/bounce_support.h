@@ -1,10 +1,13 @@
 #pragma once
 
-#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "bake/receivers/receiver.h"
+#include "bake/effects/effects.h"
+#include "bake/receivers/body_points.h"
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/inspect_scene.h"
 #include "bake/transport/ray_scene.h"
 #include "tests/support/bake.h"
 
@@ -30,5 +33,28 @@ inline bake::BakeOptions bounce_options(std::vector<std::string> effects) {
     options.effects = std::move(effects);
     return options;
 }
+
+/// A scene and what effects are told of it; textures filtered or null.
+struct LitScene {
+    explicit LitScene(formats::Scene made) : scene(std::move(made)) {}
+
+    bake::BakeInputs inputs(const bake::ScenePyramids* textures = nullptr) const {
+        return {bake::all_effects(), scene, facts, rays, sky, sets, nullptr, textures};
+    }
+    /// Layouts of rows that are the same for every view.
+    std::vector<bake::RowLayout> layouts() const {
+        bake::RowLayout layout;
+        layout.constant = true;
+        return std::vector<bake::RowLayout>(scene.materials.size(), layout);
+    }
+
+    formats::Scene scene;
+    bake::RayScene rays = bake::RayScene::build(scene, 1).value(),
+                   sky = bake::RayScene::build({}, 1).value();
+    bake::SceneFacts facts = bake::inspect_scene(scene);
+    std::vector<bake::Receiver> receivers = bake::make_vertex_receivers(scene);
+    std::vector<bake::ReceiverSet> sets =
+        bake::make_vertex_sets(scene, receivers, bake::make_body_points(scene, receivers));
+};
 
 }  // namespace opaline::tests

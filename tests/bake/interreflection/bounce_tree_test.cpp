@@ -38,10 +38,14 @@ std::vector<float> rows_of(const std::vector<Scatterer>& all) {
     return rows;
 }
 
-TEST(BounceTree, SidesOfAThinPlateDoNotMix) {
-    const auto all = both_sides(256);
+BounceTree tree_of(const std::vector<Scatterer>& all) {
     BounceTree tree(all, 1, 3);
     tree.set_rows({rows_of(all), 3});
+    return tree;
+}
+
+TEST(BounceTree, SidesOfAThinPlateDoNotMix) {
+    const BounceTree tree = tree_of(both_sides(256));
     for (std::uint32_t i = 0; i < 64; ++i) {
         const auto u = random_uniform(4, RandomStage::bounce_rays, i);
         for (const bool behind : {false, true}) {
@@ -53,9 +57,7 @@ TEST(BounceTree, SidesOfAThinPlateDoNotMix) {
 }
 
 TEST(BounceTree, TheFootprintOfNothingFindsANeighbourAndThatOfAllTheMean) {
-    const auto all = both_sides(2048);
-    BounceTree tree(all, 1, 3);
-    tree.set_rows({rows_of(all), 3});
+    const BounceTree tree = tree_of(both_sides(2048));
     const auto root = tree.find({0.2f, 0, 0.7f}, {0, false, {0, 1, 0}}, 4);
     EXPECT_NEAR(tree.rows().row(root)[0], 0.5, 0.005) << "of the square, not of its points";
     EXPECT_NEAR(tree.rows().row(root)[1], 0.5, 0.005);
@@ -74,8 +76,7 @@ TEST(BounceTree, ALongFootprintFindsEveryScattererUnderIt) {
                            (std::floor(static_cast<float>(i) / 32) + 0.5f * u[1]) / 32};
         all[i].normal = {0, 1, 0};
     }
-    BounceTree tree(all, 1, 3);
-    tree.set_rows({rows_of(all), 3});
+    const BounceTree tree = tree_of(all);
     std::size_t found_in_all = 0;
     for (std::uint32_t k = 0; k < 64; ++k) {
         const auto u = random_uniform(5, RandomStage::bounce_rays, k);
@@ -117,9 +118,7 @@ TEST(BounceTree, ALongFootprintFindsEveryScattererUnderIt) {
 
 // Means over a footprint lie closer to its middle the smaller it is.
 TEST(BounceTree, NodesAreAsLargeAsTheFootprint) {
-    const auto all = both_sides(4096);
-    BounceTree tree(all, 1, 3);
-    tree.set_rows({rows_of(all), 3});
+    const BounceTree tree = tree_of(both_sides(4096));
     for (const float footprint : {0.25f, 0.0625f, 0.015625f}) {
         double squares = 0;
         for (std::uint32_t i = 0; i < 256; ++i) {

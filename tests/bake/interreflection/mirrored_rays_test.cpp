@@ -131,9 +131,8 @@ TEST(MirroredRays, ARoughWallMirrorsLessAtGrazingAnglesAndAroundTheMirrorsDirect
         wall.irradiance(floor, [](glm::vec3 d) { return d.x > 0 && d.y < 0; });
     EXPECT_NEAR(from_above, up, 0.02 * up);
     EXPECT_NEAR(from_below, down, 0.08 * down);
-    const double smooth =
-        BlackMedium({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80})})
-            .irradiance(floor, [](glm::vec3) { return true; });
+    const double smooth = BlackMedium({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80})})
+                              .irradiance(floor, [](glm::vec3) { return true; });
     EXPECT_LT(from_above + from_below, 0.9 * smooth);
 }
 

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/receivers/body_points.h"
-#include "bake/receivers/vertex_receivers.h"
-#include "bake/scene/inspect_scene.h"
 #include "tests/bake/interreflection/bounce_support.h"
 
 namespace opaline::bake {
@@ -15,21 +12,13 @@ struct Found {
     std::uint64_t rays = 0;
 };
 
-Found find_in(const formats::Scene& scene, std::size_t count, unsigned threads = 1) {
-    const RayScene rays = RayScene::build(scene, 1).value();
-    const RayScene sky = RayScene::build({}, 1).value();
-    const SceneFacts facts = inspect_scene(scene);
-    const auto receivers = make_vertex_receivers(scene);
-    const auto sets = make_vertex_sets(scene, receivers, make_body_points(scene, receivers));
-    const BakeInputs bake{all_effects(), scene, facts, rays, sky, sets};
-    RowLayout layout;
-    layout.constant = true;
-    const std::vector<RowLayout> layouts(scene.materials.size(), layout);
-    Context context;
-    context.threads = threads;
+Found find_in(formats::Scene scene, std::size_t count) {
+    const tests::LitScene lit(std::move(scene));
+    const std::vector<RowLayout> layouts = lit.layouts();
+    const BakeInputs inputs = lit.inputs();
     const Knobs knobs;
     Found found;
-    found.scatterers = find_scatterers({bake, knobs, context, layouts, {}, {}}, count, found.rays);
+    found.scatterers = find_scatterers({inputs, knobs, {}, layouts, {}, {}}, count, found.rays);
     return found;
 }
 

@@ -7,13 +7,9 @@
 #include <numbers>
 #include <utility>
 
-#include "bake/effects/effects.h"
 #include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
-#include "bake/receivers/body_points.h"
-#include "bake/receivers/vertex_receivers.h"
-#include "bake/scene/inspect_scene.h"
 #include "tests/bake/interreflection/bounce_support.h"
 
 namespace opaline::bake {
@@ -33,34 +29,24 @@ formats::Scene make_open_room(std::uint32_t cells = 32) {
     return room;
 }
 
-// A scene whose surfaces have rows, and the light between them.
-struct LitWorld {
-    LitWorld(formats::Scene made, std::vector<RowLayout> rows, double bounce_rays)
-        : scene(std::move(made)), layouts(std::move(rows)) {
+// A scene and the light between its surfaces.
+struct LitWorld : tests::LitScene {
+    LitWorld(formats::Scene made, double bounce_rays) : LitScene(std::move(made)) {
         BakeOptions options;
         options.set(kBounceRays, bounce_rays);
         options.effects = {"direct", "interreflection"};
         std::uint64_t traced = 0;
-        light =
-            find_bounce_light({bake, resolve_knobs(options).value(), {}, layouts, {}, {}}, traced);
+        light = find_bounce_light({bake, resolve_knobs(options).value(), {}, rows, {}, {}}, traced);
     }
 
-    formats::Scene scene;
-    std::vector<RowLayout> layouts;
-    RayScene rays = RayScene::build(scene, 1).value(), sky = RayScene::build({}, 1).value();
-    SceneFacts facts = inspect_scene(scene);
-    std::vector<Receiver> receivers = make_vertex_receivers(scene);
-    std::vector<ReceiverSet> sets =
-        make_vertex_sets(scene, receivers, make_body_points(scene, receivers));
-    BakeInputs bake{all_effects(), scene, facts, rays, sky, sets};
+    std::vector<RowLayout> rows = layouts();
+    BakeInputs bake = inputs();
     std::shared_ptr<const BounceLight> light;
 };
 
 // Most points of a room need no rays of their own. Row by row, against very many rays.
 TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
-    RowLayout opaque;
-    opaque.constant = true;
-    const LitWorld world(make_open_room(), {opaque}, 64);
+    const LitWorld world(make_open_room(), 64);
     const auto& light = world.light;
     const auto& receivers = world.receivers;
     ASSERT_NE(light, nullptr);
@@ -93,9 +79,7 @@ TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
 
 // Near corners light changes within a fifth of the distance to the next wall: sites follow.
 TEST(SiteLight, SitesAreDenserWhereSurfacesAreNear) {
-    RowLayout opaque;
-    opaque.constant = true;
-    const LitWorld world(make_open_room(120), {opaque}, 16);
+    const LitWorld world(make_open_room(120), 16);
     ASSERT_NE(world.light, nullptr);
     EXPECT_GT(world.light->site_rows.count(), kMostSites + 2000);
     EXPECT_LT(world.light->site_rows.count(), world.receivers.size());
@@ -109,15 +93,13 @@ TEST(SiteLight, SitesAreDenserWhereSurfacesAreNear) {
 
 // Vertices that seams double trace the same rays: a second site there would pass for another one.
 TEST(SiteLight, CopiesOfAVertexAreOneSite) {
-    RowLayout opaque;
-    opaque.constant = true;
     formats::Scene doubled = make_open_room();
     const std::size_t walls = doubled.primitives.size();
     for (std::size_t i = 0; i < walls; ++i) {
         doubled.primitives.push_back(doubled.primitives[i]);
     }
     const auto sites_of = [&](formats::Scene scene) {
-        const LitWorld world(std::move(scene), {opaque}, 16);
+        const LitWorld world(std::move(scene), 16);
         return world.light->site_rows.count();
     };
     EXPECT_EQ(sites_of(make_open_room()), 5u * 33 * 33);

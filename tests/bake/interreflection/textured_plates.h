@@ -8,9 +8,6 @@
 
 #include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_light.h"
-#include "bake/receivers/body_points.h"
-#include "bake/receivers/vertex_receivers.h"
-#include "bake/scene/inspect_scene.h"
 #include "bake/truth/test_lights.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -47,29 +44,18 @@ inline formats::Image8 make_even_texels(std::uint32_t side, std::uint8_t code) {
 }
 
 /// Bounced light between the surfaces of a scene.
-struct BouncedIn {
-    explicit BouncedIn(formats::Scene made)
-        : scene(std::move(made)),
-          rays(bake::RayScene::build(scene, 1).value()),
-          sky(bake::RayScene::build({}, 1).value()),
-          facts(bake::inspect_scene(scene)),
-          receivers(bake::make_vertex_receivers(scene)),
-          sets(bake::make_vertex_sets(scene, receivers, bake::make_body_points(scene, receivers))) {
-    }
+struct BouncedIn : LitScene {
+    using LitScene::LitScene;
 
     /// Irradiance of every vertex under an even sky of radiance 1, without what comes straight,
     /// over pi.
     std::vector<double> light(bool filtered) const {
         const bake::ScenePyramids textures = bake::make_scene_pyramids(scene);
-        bake::RowLayout layout;
-        layout.constant = true;
-        const std::vector<bake::RowLayout> layouts(scene.materials.size(), layout);
-        const bake::BakeInputs inputs{
-            bake::all_effects(),           scene, facts, rays, sky, sets, nullptr,
-            filtered ? &textures : nullptr};
+        const std::vector<bake::RowLayout> rows = layouts();
+        const bake::BakeInputs known = inputs(filtered ? &textures : nullptr);
         const bake::Knobs knobs = bake::resolve_knobs(bounce_options({"direct"})).value();
         std::uint64_t traced = 0;
-        const auto bounced = bake::find_bounce_light({inputs, knobs, {}, layouts, {}, {}}, traced);
+        const auto bounced = bake::find_bounce_light({known, knobs, {}, rows, {}, {}}, traced);
         std::vector<float> even;  // a sky of radiance 1
         for (int face = 0; face < 6; ++face) {
             for (const double solid_angle : formats::texel_solid_angles(8)) {
@@ -85,12 +71,6 @@ struct BouncedIn {
         }
         return light;
     }
-
-    formats::Scene scene;
-    bake::RayScene rays, sky;
-    bake::SceneFacts facts;
-    std::vector<bake::Receiver> receivers;
-    std::vector<bake::ReceiverSet> sets;
 };
 
 }  // namespace opaline::tests

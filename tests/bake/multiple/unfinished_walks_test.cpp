@@ -24,27 +24,21 @@ TEST(UnfinishedWalks, OfALittleLightNothingIsSaid) {
     EXPECT_FALSE(describe_unfinished("Wax", lose(3, 0, 0.9)));
 }
 
-TEST(UnfinishedWalks, LightThatLeavesThroughHolesIsStated) {
-    const auto warning = describe_unfinished("Wax", lose(30, 0, 16));
-    ASSERT_TRUE(warning);
-    EXPECT_EQ(warning->where, "material 'Wax'");
-    EXPECT_THAT(warning->fault,
+TEST(UnfinishedWalks, HowMuchLightWhyAndWhatIsDoneAboutItIsStated) {
+    const auto holes = describe_unfinished("Wax", lose(30, 0, 16));
+    ASSERT_TRUE(holes);
+    EXPECT_EQ(holes->where, "material 'Wax'");
+    EXPECT_THAT(holes->fault,
                 AllOf(HasSubstr("of 1000 random walks 30 leave through holes of its mesh: 1.6 %"),
                       HasSubstr("as bright as the rest"), Not(HasSubstr("too often"))));
-    EXPECT_EQ(warning->remedy, "close the surface");
-}
-
-TEST(UnfinishedWalks, OfAClosedBodyNobodyIsAskedToCloseIt) {
-    const auto warning = describe_unfinished("Wax", lose(0, 20, 9));
-    ASSERT_TRUE(warning);
-    EXPECT_THAT(warning->fault, AllOf(HasSubstr("20 scatter too often"), Not(HasSubstr("holes"))));
-    EXPECT_THAT(warning->remedy, HasSubstr("--check-model"));
-}
-
-TEST(UnfinishedWalks, OfABodyThatIsMostlyHoleLightIsMissing) {
-    const auto warning = describe_unfinished("Wax", lose(700, 0, 600));
-    ASSERT_TRUE(warning);
-    EXPECT_THAT(warning->fault, AllOf(HasSubstr("60.0 %"), HasSubstr("is missing")));
+    EXPECT_EQ(holes->remedy, "close the surface");
+    const auto closed = describe_unfinished("Wax", lose(0, 20, 9));
+    ASSERT_TRUE(closed);
+    EXPECT_THAT(closed->fault, AllOf(HasSubstr("20 scatter too often"), Not(HasSubstr("holes"))));
+    EXPECT_THAT(closed->remedy, HasSubstr("--check-model"));
+    const auto mostly_hole = describe_unfinished("Wax", lose(700, 0, 600));
+    ASSERT_TRUE(mostly_hole);
+    EXPECT_THAT(mostly_hole->fault, AllOf(HasSubstr("60.0 %"), HasSubstr("is missing")));
 }
 
 }  // namespace

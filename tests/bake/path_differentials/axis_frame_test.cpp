@@ -44,30 +44,10 @@ TEST(AxisFrame, CarriedDirectionsTurnWithTheAxisAndDoNotSpin) {
     EXPECT_LT(to_axis, 1e-12);
 }
 
-// The axis itself moves by dR.
-TEST(AxisFrame, AxisIsCarriedByItsOwnChange) {
-    const glm::dvec3 R = glm::normalize(glm::dvec3(1, 2, 2));
-    const glm::dvec3 dR = glm::cross(R, glm::dvec3(0.3, 0.1, -0.5));
-    EXPECT_LT(glm::length(carry_with_axis(R, dR, R) - dR), 1e-15);
-}
-
-/// Spin around R of a frame whose T is perpendicular to a fixed reference axis.
-double spin_of_fixed_reference(const glm::dvec3& R, const glm::dvec3& dR) {
-    const auto tangent = [&](auto x) {
-        using S = decltype(x);
-        return tests::normalized(
-            tests::cross(tests::Vector<S>(glm::dvec3(0, 0, 1)), tests::moved(R, dR, x)));
-    };
-    const glm::dvec3 T = values(tangent(tests::Dual(0, 0)));
-    return std::abs(glm::dot(glm::cross(R, T), tests::derivative(tangent)));
-}
-
-// Hard case: near its reference axis such a frame spins without bound; a carried direction does
-// not.
+// Hard case: near its reference axis a frame whose T is perpendicular to one spins without bound.
 TEST(AxisFrame, NearAReferenceAxisNothingDiverges) {
     for (const double angle : {1e-2, 1e-4, 1e-6}) {
         const glm::dvec3 R(std::sin(angle), 0, std::cos(angle)), dR(0, 0.1, 0);
-        EXPECT_GT(spin_of_fixed_reference(R, dR), 0.09 / angle);
         const glm::dvec3 D = glm::normalize(glm::dvec3(0.3, 0.5, 0.8));
         EXPECT_LT(glm::length(carry_with_axis(R, dR, D)), 0.1 + 1e-12);
     }

@@ -1,7 +1,6 @@
 #include "bake/path_differentials/bounded_change.h"
 
 #include "tests/bake/path_differentials/event_check.h"
-#include "tests/bake/path_differentials/transfer.h"
 
 namespace opaline::bake {
 namespace {
@@ -14,20 +13,6 @@ TEST(BoundedChange, GrazingTransfersMoveByAtMost1e4) {
         const glm::dvec3 moved = bounded_transfer(D, N, 2, dP, dD);
         EXPECT_LE(glm::length(moved), 1e4 * (1 + 1e-9) * glm::length(dP + 2.0 * dD)) << c;
         EXPECT_EQ(moved.z, 0) << c;
-        if (std::abs(c) >= 1e-3) {
-            EXPECT_LT(glm::length(moved - transfer_to_plane(D, N, 2, dP, dD).dP), 1e-12) << c;
-        }
-    }
-}
-
-TEST(BoundedChange, TransfersAreExactElsewhere) {
-    tests::RandomInputs random(33);
-    for (int i = 0; i < tests::kRandomCases; ++i) {
-        const glm::dvec3 N = random.unit(), D = -random.unit_facing(N, 1e-3);
-        const glm::dvec3 dP = random.vector(), dD = random.change_of(D);
-        const glm::dvec3 exact = transfer_to_plane(D, N, 1.5, dP, dD).dP;
-        EXPECT_LT(glm::length(bounded_transfer(D, N, 1.5, dP, dD) - exact),
-                  1e-12 * (1 + glm::length(exact)));
     }
 }
 
@@ -86,37 +71,19 @@ TEST(BoundedChange, RefractionOfASmallStepIsItsDerivative) {
 
 TEST(BoundedChange, SecantsOfLobesTendToTheirDerivatives) {
     tests::RandomInputs random(35);
-    for (const DiskMap map : {DiskMap::polar, DiskMap::concentric}) {
-        for (const Lobe& lobe :
-             {Lobe{Lobe::Kind::power, 1}, Lobe{Lobe::Kind::power, 40},
-              Lobe{Lobe::Kind::henyey_greenstein, 0.7}, Lobe{Lobe::Kind::cone, 0.5}}) {
-            for (int i = 0; i < 1000; ++i) {
-                const double u = random.uniform(0.1, 0.9), v = random.uniform(0.1, 0.9);
-                const LobeDirection exact = sample_lobe(lobe, map, u, v);
-                const LobeDirection secant = secant_of_lobe(lobe, map, u, v, 1e-5, 1e-5);
-                EXPECT_LT(glm::length(secant.dD_du - exact.dD_du), 1e-6);
-                EXPECT_LT(glm::length(secant.dD_dv - exact.dD_dv), 1e-6);
-                EXPECT_LT(glm::length(secant.D - exact.D), 1e-15);
-                EXPECT_EQ(secant.pdf, exact.pdf);
-                EXPECT_EQ(secant.dln_pdf_du, exact.dln_pdf_du);
-                EXPECT_EQ(secant.dln_pdf_dv, exact.dln_pdf_dv);
-            }
+    for (const Lobe& lobe :
+         {Lobe{Lobe::Kind::power, 1}, Lobe{Lobe::Kind::power, 40},
+          Lobe{Lobe::Kind::henyey_greenstein, 0.7}, Lobe{Lobe::Kind::cone, 0.5}}) {
+        for (int i = 0; i < 1000; ++i) {
+            const double u = random.uniform(0.1, 0.9), v = random.uniform(0.1, 0.9);
+            const LobeDirection exact = sample_lobe(lobe, u, v);
+            const LobeDirection secant = secant_of_lobe(lobe, u, v, 1e-5);
+            EXPECT_LT(glm::length(secant.dD_du - exact.dD_du), 1e-6);
+            EXPECT_LT(glm::length(secant.dD_dv - exact.dD_dv), 1e-6);
+            EXPECT_LT(glm::length(secant.D - exact.D), 1e-15);
+            EXPECT_EQ(secant.dln_pdf_du, exact.dln_pdf_du);
+            EXPECT_EQ(secant.dln_pdf_dv, exact.dln_pdf_dv);
         }
-    }
-}
-
-// Hard case: |dD/dv| of the polar map is 1100 on the axis at S = 40. The concentric columns are
-// about sqrt(1 / pdf) = 0.39 there, the polar secant is the sine half a cell away.
-TEST(BoundedChange, AxisOfALobeIsBounded) {
-    const Lobe lobe{Lobe::Kind::power, 40};
-    EXPECT_NEAR(glm::length(sample_lobe(lobe, DiskMap::polar, 0.3, 1e-8).dD_dv), 1100, 10);
-    const LobeDirection round = sample_lobe(lobe, DiskMap::concentric, 0.5, 0.5 + 1e-8);
-    EXPECT_NEAR(std::sqrt(glm::length(glm::cross(round.dD_du, round.dD_dv))), 0.39, 0.005);
-    EXPECT_LT(glm::length(round.dD_du), 0.5);
-    for (const double step : {0.01, 0.5, 1.0}) {
-        const LobeDirection secant = secant_of_lobe(lobe, DiskMap::polar, 0.3, 1e-8, step, step);
-        const double c = eval_lobe(lobe, step / 2).cosine, s = std::sqrt(1 - c * c);
-        EXPECT_NEAR(step * glm::length(secant.dD_dv), s, 1e-3 * s + 1e-4);
     }
 }
 
@@ -125,20 +92,16 @@ TEST(BoundedChange, AxisOfALobeIsBounded) {
 TEST(BoundedChange, RimOfALobeIsBoundedBy90Degrees) {
     for (const Lobe& lobe : {Lobe{Lobe::Kind::power, 1}, Lobe{Lobe::Kind::power, 40},
                              Lobe{Lobe::Kind::henyey_greenstein, 0.9}, Lobe{Lobe::Kind::cap, 2}}) {
-        for (const DiskMap map : {DiskMap::polar, DiskMap::concentric}) {
-            for (const double v : {0.99, 1 - 1e-6, 1 - 1e-12}) {
-                for (const double step : {1e-3, 0.25, 1.0}) {
-                    const LobeDirection at = secant_of_lobe(lobe, map, 0.4, v, step, step);
-                    for (const glm::dvec3& column : {at.dD_du, at.dD_dv}) {
-                        EXPECT_LE(step * glm::length(column), std::sqrt(2.0) + 1e-12);
-                    }
+        for (const double v : {0.995, 1 - 1e-6, 1 - 1e-12}) {
+            for (const double step : {1e-3, 0.25, 1.0}) {
+                const LobeDirection at = secant_of_lobe(lobe, 0.4, v, step);
+                for (const glm::dvec3& column : {at.dD_du, at.dD_dv}) {
+                    EXPECT_LE(step * glm::length(column), std::sqrt(2.0) + 1e-12);
                 }
             }
         }
     }
-    EXPECT_GT(
-        glm::length(sample_lobe({Lobe::Kind::power, 40}, DiskMap::polar, 0.4, 1 - 1e-12).dD_dv),
-        1e9);
+    EXPECT_GT(glm::length(sample_lobe({Lobe::Kind::power, 40}, 0.4, 1 - 1e-12).dD_dv), 1e9);
 }
 
 TEST(BoundedChange, DirectionsAreShortenedAndKept) {

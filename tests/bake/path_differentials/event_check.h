@@ -19,15 +19,6 @@ inline void expect_derivatives(const ColumnErrors& errors, double dual_tolerance
     EXPECT_LT(errors.difference, difference_tolerance);
 }
 
-/// A scalar as a vector, for `ColumnErrors`.
-template <class S>
-Vector<S> alone(S value) {
-    return {value, S(0), S(0)};
-}
-inline glm::dvec3 alone_column(double change) {
-    return {change, 0, 0};
-}
-
 /// Largest relative error of area times pdf, which is 1 where (u, v) samples the pdf.
 struct AreaErrors {
     double largest = 0;

@@ -12,18 +12,6 @@ namespace opaline::tests {
 /// What the columns are derivatives of, as textbooks write it, over any scalar.
 
 template <class S>
-Vector<S> camera_direction(Vector<S> view, Vector<S> right, Vector<S> up, S x, S y) {
-    return normalized(view + x * right + y * up);
-}
-
-template <class S>
-std::array<S, 2> polar_point(S u, S v) {
-    using std::cos, std::sin, std::sqrt;
-    const S phi = S(2 * std::numbers::pi) * u;
-    return {sqrt(v) * cos(phi), sqrt(v) * sin(phi)};
-}
-
-template <class S>
 std::array<S, 2> concentric_point(S u, S v) {
     using std::abs, std::cos, std::sin;
     const S a = S(2) * u - S(1), b = S(2) * v - S(1);
@@ -34,11 +22,6 @@ std::array<S, 2> concentric_point(S u, S v) {
     const S r = by_a ? a : b, quarter = S(std::numbers::pi / 4);
     const S phi = by_a ? quarter * (b / a) : S(std::numbers::pi / 2) - quarter * (a / b);
     return {r * cos(phi), r * sin(phi)};
-}
-
-template <class S>
-std::array<S, 2> disk_point(bool concentric, S u, S v) {
-    return concentric ? concentric_point(u, v) : polar_point(u, v);
 }
 
 /// A direction whose cosine to the axis is c(q), q the squared radius of a point of the disk.
@@ -90,14 +73,6 @@ S sphere_distance(Vector<S> P, Vector<S> D, Vector<S> center, double radius) {
     return (S(0) - b - sqrt(b * b - a * c)) / a;
 }
 
-/// Columns T, B of the frame of [Duff2017].
-template <class S>
-std::array<Vector<S>, 2> branchless_frame(Vector<S> n) {
-    const S sign = n.z < S(0) ? S(-1) : S(1), a = S(-1) / (sign + n.z), b = n.x * n.y * a;
-    return {Vector<S>{S(1) + sign * n.x * n.x * a, sign * b, S(0) - sign * n.x},
-            Vector<S>{b, sign + n.y * n.y * a, S(0) - n.y}};
-}
-
 template <class S>
 Vector<S> in_frame(std::array<Vector<S>, 2> frame, Vector<S> axis, Vector<S> d) {
     return d.x * frame[0] + d.y * frame[1] + d.z * axis;
@@ -115,29 +90,9 @@ Vector<S> visible_normal(Vector<S> w, double a_x, double a_y, std::array<S, 2> p
 }
 
 template <class S>
-Vector<S> triangle_point(std::array<Vector<S>, 3> corner, S u, S v, bool folded) {
-    using std::sqrt;
-    const Vector<S> e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
-    if (folded) {
-        const S half = (v > u ? u : v) / S(2);
-        return corner[0] + (u - half) * e1 + (v - half) * e2;
-    }
-    const S root = sqrt(u);
-    return corner[0] + (root * (S(1) - v)) * e1 + (root * v) * e2;
-}
-
-/// ln of the isotropic microfacet lobe D G2 / (4 cos cos), up to a constant.
-template <class S>
-S ln_microfacet(Vector<S> N, Vector<S> in, Vector<S> out, double alpha) {
-    using std::log, std::sqrt;
-    const S a2 = S(alpha * alpha), c = dot(N, normalized(in + out));
-    const S d = c * c * (a2 - S(1)) + S(1);
-    const auto lambda = [&](S cosine) {
-        return (sqrt(S(1) + a2 * (S(1) / (cosine * cosine) - S(1))) - S(1)) / S(2);
-    };
-    const S ln_D = log(a2) - log(S(std::numbers::pi)) - S(2) * log(d);
-    const S c_i = dot(N, in), c_o = dot(N, out);
-    return ln_D - log(S(1) + lambda(c_i) + lambda(c_o)) - log(S(4) * c_i * c_o);
+Vector<S> triangle_point(std::array<Vector<S>, 3> corner, S u, S v) {
+    const S half = (v > u ? u : v) / S(2);
+    return corner[0] + (u - half) * (corner[1] - corner[0]) + (v - half) * (corner[2] - corner[0]);
 }
 
 }  // namespace opaline::tests

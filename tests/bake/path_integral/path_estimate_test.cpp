@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
 #include "bake/path_integral/grid_medium.h"
+#include "bake/path_integral/probe_depth.h"
+#include "bake/path_integral/zonal_table.h"
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/phase.h"
 #include "tests/bake/path_integral/path_support.h"
@@ -17,16 +20,43 @@ namespace {
 using glm::dvec3;
 
 using std::numbers::pi;
-constexpr double kOnce[] = {1.0};
 
 ZonalTable table_of(PathKernel kernel, double g) {
     return make_zonal_table(kernel, expand_henyey_greenstein(g, 400));
 }
 
+// A point and two directions.
+struct PathQuery {
+    dvec3 position{0};      // [m], in the limits' box
+    dvec3 onward{0, 0, 1};  // unit; from `position` away from the eye
+    dvec3 light{0, 0, 1};   // unit; toward the distant light
+};
+
+// Light from afar that a medium scatters toward the eye [1/sr, per unit irradiance measured
+// perpendicular to its direction]: two scatterings or more. Table of PathKernel::ray: radiance at
+// the position, corrected [Premoze2003] (18) with the sum over directions in closed form
+// (README.md, "Radiance"). Of PathKernel::source: radiance scattered at the position, per unit b.
+// `length`: of paths, in scattering depths onward.
+template <class Medium, class Visibility>
+double estimate_scattered(const ZonalTable& table, const PathQuery& query, const Medium& medium,
+                          const MarchLimits& limits, double length, Visibility&& visibility) {
+    const auto scattering = [&](dvec3 x) { return Coefficients(medium(x)).scattering; };
+    const double onward =
+        probe_depth(scattering, limits.box, query.position, query.onward, limits.step);
+    const ZonalRow kernel = interpolate_row(table, glm::dot(query.onward, query.light));
+    const Turns turns(query.onward, query.light);
+    double sum = 0;
+    for (const Turn& turn : turns) {
+        sum += gather_along_path({query.position, turn, std::max(length * onward, kShortestTurn)},
+                                 medium, limits, kernel, visibility);
+    }
+    return sum / static_cast<double>(turns.size());
+}
+
 template <class Medium>
 double estimate(const ZonalTable& table, const PathQuery& query, const Medium& medium,
-                const MarchLimits& limits, std::span<const double> lengths = kOnce) {
-    return estimate_scattered(table, query, medium, limits, lengths,
+                const MarchLimits& limits, double length = 1) {
+    return estimate_scattered(table, query, medium, limits, length,
                               [&](dvec3 x) { return medium.visibility(x, query.light); });
 }
 
@@ -35,16 +65,16 @@ double estimate_row(const tests::VolumeRow& row, PathKernel kernel, int steps) {
     const PathQuery query{tests::vector_of(row, "p"), tests::vector_of(row, "v"),
                           tests::vector_of(row, "l")};
     const ZonalTable table = table_of(kernel, row.number("g"));
-    const double lengths[] = {row.number("arg")};
+    const double length = row.number("arg");
     if (row.cell.at("geometry") == "sphere") {
         return estimate(table, query,
                         tests::Ball{row.number("sigma_t"), size, row.number("albedo")},
-                        {.box = tests::cube(size), .step = 2 * size / steps}, lengths);
+                        {.box = tests::cube(size), .step = 2 * size / steps}, length);
     }
     EXPECT_EQ(row.cell.at("geometry"), "blob") << row.id();
     return estimate(table, query,
                     tests::Blob{row.number("sigma_t"), size, row.number("albedo"), 4 * size},
-                    {.box = tests::cube(4 * size), .step = 8 * size / steps}, lengths);
+                    {.box = tests::cube(4 * size), .step = 8 * size / steps}, length);
 }
 
 TEST(PathEstimate, LightOfTwoScatteringsOrMoreIsThatOfTheTable) {
@@ -74,7 +104,7 @@ TEST(PathEstimate, OnAGridIsThatOfTheMediumThatTheGridSamples) {
     const ZonalTable table = table_of(PathKernel::source, 0.75);
     const auto extinction = [&](dvec3 x) { return medium(x).extinction(); };
     const MarchLimits limits{.box = grid_box(grid), .step = edge};
-    const double value = estimate_scattered(table, query, medium, limits, kOnce, [&](dvec3 x) {
+    const double value = estimate_scattered(table, query, medium, limits, 1, [&](dvec3 x) {
         return std::exp(-probe_depth(extinction, limits.box, x, query.light, edge));
     });
     EXPECT_NEAR(value / estimate(table, query, kBlob, kLimits), 1, 5e-3);
@@ -104,6 +134,14 @@ TEST(PathEstimate, OfAThinMediumGrowsWithTheSquareOfItsDensity) {
     EXPECT_EQ(value(0), 0);
 }
 
+TEST(PathEstimate, WithoutAbsorptionEndsWhereThePathLeaves) {
+    const ZonalTable table = table_of(PathKernel::source, 0.9);
+    const double value = estimate(table, {dvec3(0), {0, 0, 1}, {0, 0, 1}}, tests::Ball{1e4, 1, 1},
+                                  {.box = tests::cube(1), .step = 0.01});
+    EXPECT_TRUE(std::isfinite(value));
+    EXPECT_GT(value, 0);
+}
+
 TEST(PathEstimate, OfAnyDensityIsFiniteAndNotNegative) {
     for (const PathKernel kernel : {PathKernel::ray, PathKernel::source}) {
         for (const double g : {-0.9, -0.3, 0.0, 0.9}) {
@@ -119,25 +157,6 @@ TEST(PathEstimate, OfAnyDensityIsFiniteAndNotNegative) {
             }
         }
     }
-}
-
-TEST(PathEstimate, WithoutAbsorptionEndsWhereThePathLeaves) {
-    const ZonalTable table = table_of(PathKernel::source, 0.9);
-    const double value = estimate(table, {dvec3(0), {0, 0, 1}, {0, 0, 1}}, tests::Ball{1e4, 1, 1},
-                                  {.box = tests::cube(1), .step = 0.01});
-    EXPECT_TRUE(std::isfinite(value));
-    EXPECT_GT(value, 0);
-}
-
-TEST(PathEstimate, OfSeveralLengthsIsTheirMean) {
-    const PathQuery query{{0.1, -0.7, 0}, kView, {0, 0, 1}};
-    const ZonalTable table = table_of(PathKernel::source, 0.75);
-    const double lengths[] = {0.5, 1, 2};
-    double sum = 0;
-    for (const double& length : lengths) {
-        sum += estimate(table, query, kBlob, kLimits, {&length, 1});
-    }
-    EXPECT_NEAR(estimate(table, query, kBlob, kLimits, lengths) / (sum / 3), 1, 1e-14);
 }
 
 // Without absorption everything under light of radiance 1 has radiance 1. Path integration keeps

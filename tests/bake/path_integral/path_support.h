@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "bake/path_integral/coefficients.h"
+#include "bake/path_integral/turn.h"
 #include "bake/path_integral/volume_box.h"
 #include "formats/sparse_grid.h"
 #include "tests/support/volume_table.h"
@@ -14,6 +15,16 @@ namespace opaline::tests {
 
 inline bake::VolumeBox cube(double half) {
     return {glm::dvec3(-half), glm::dvec3(half)};
+}
+
+/// End of the arc minus its start [m] in a homogeneous medium, where the path turns at a constant
+/// rate: (ell_total / b) (sin(angle) / angle from + (1 - cos(angle)) / angle aside), [Premoze2003]
+/// (8) with (9). `ell_total` >= 0; `scattering` b [1/m], > 0.
+inline glm::dvec3 arc_end(const bake::Turn& turn, double ell_total, double scattering) {
+    // 1 - cos(angle) = 2 sin(angle / 2)^2 does not cancel.
+    const auto sinc = [](double x) { return x == 0 ? 1 : std::sin(x) / x; };
+    const double lateral = std::sin(turn.angle / 2) * sinc(turn.angle / 2);
+    return ell_total / scattering * (sinc(turn.angle) * turn.from + lateral * turn.aside);
 }
 
 inline glm::dvec3 vector_of(const VolumeRow& row, const std::string& name) {

@@ -57,23 +57,11 @@ TEST(QuasiPath, InABlobPassesThroughThePositionsOfTheTable) {
     }
 }
 
-// The table's paths are tested by name of quantity: none may be left out.
-TEST(QuasiPath, TheTableHasPathsOfNoOtherTotalDepth) {
-    OPALINE_NEEDS_REFERENCE("volumes.csv");
-    std::ifstream file(tests::reference_folder() / "volumes.csv");
-    for (std::string line; std::getline(file, line);) {
-        const std::size_t at = line.find("_ltot");
-        if (at != std::string::npos) {
-            EXPECT_TRUE(line[at + 5] == '2' || line[at + 5] == '3') << line;
-        }
-    }
-}
-
 TEST(QuasiPath, InAHomogeneousMediumIsAnArcAndThenStraight) {
     const double b = 3, total = 2, angle = pi / 3;
     const Turn turn = turn_between({0, 0, 1}, {std::sin(angle), 0, std::cos(angle)});
     const dvec3 centre = total / (b * angle) * turn.aside;
-    const dvec3 end = arc_end(turn, total, b);
+    const dvec3 end = tests::arc_end(turn, total, b);
     double first_straight = 0;
     const PathEnd last = march_quasi_path(
         {dvec3(0), turn, total}, homogeneous(b),
@@ -235,15 +223,6 @@ TEST(QuasiPath, StepsIntoADenseCloudAreShort) {
                          return true;
                      });
     EXPECT_LE(deepest, 0.5);
-}
-
-TEST(QuasiPath, EndsWhereItsVisitorStopsIt) {
-    int steps = 0;
-    const PathEnd end = march_quasi_path({dvec3(0), turn_between({0, 0, 1}, {0, 1, 0}), 1},
-                                         homogeneous(0.1), {.box = tests::cube(1), .step = 0.1},
-                                         [&](const PathStep&) { return ++steps < 3; });
-    EXPECT_EQ(steps, 3);
-    EXPECT_NEAR(end.length, 0.3, 1e-15);
 }
 
 // What a path absorbs of the light that it emits to its start: with an enclosure of the same

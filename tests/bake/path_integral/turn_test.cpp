@@ -31,7 +31,7 @@ TEST(Turn, ArcsInAHomogeneousMediumEndAsTheTableSays) {
         for (const auto& row : rows) {
             const double angle = row.number("arg") * pi / 180;
             const Turn turn{{0, 0, 1}, {1, 0, 0}, in_plane(angle), angle};
-            const dvec3 end = arc_end(turn, row.number("size"), row.number("sigma_t"));
+            const dvec3 end = tests::arc_end(turn, row.number("size"), row.number("sigma_t"));
             // The table has 12 digits.
             EXPECT_NEAR(lateral ? end.x : end.z, row.value(),
                         1e-12 * std::max(1.0, 5 * row.value()))
@@ -66,7 +66,7 @@ TEST(Turn, BetweenEqualDirectionsIsNone) {
     const dvec3 v = glm::normalize(dvec3(1, 2, 3));
     const Turn turn = only_turn(v, v);
     EXPECT_EQ(turn.angle, 0);
-    EXPECT_LT(glm::length(arc_end(turn, 2, 4) - 0.5 * v), 1e-15);
+    EXPECT_LT(glm::length(tests::arc_end(turn, 2, 4) - 0.5 * v), 1e-15);
 }
 
 TEST(Turn, BetweenOppositeDirectionsStandsForAllPlanes) {

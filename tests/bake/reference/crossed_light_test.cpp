@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "bake/reference/reference_image.h"
-#include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::tests {

@@ -3,8 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include "bake/reference/reference_image.h"
-#include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::tests {
@@ -25,10 +23,7 @@ bake::Estimate estimate(const ReferenceFixture& fixture, std::uint32_t receivers
 // 1 to 1e-3, with a standard error small enough to say so, and within three stored standard errors,
 // over all receivers. Exact where every path carries 1: then the stored variance is rounding.
 void expect_white(const bake::Estimate& estimate, const std::string& what) {
-    bake::Moments all;
-    for (const bake::Moments& m : estimate.pixel) {
-        all.merge(m);
-    }
+    const bake::Moments all = merged(estimate.pixel);
     EXPECT_NEAR(all.mean.y, 1, 1e-3) << what;
     EXPECT_LT(standard_error(all), 3e-4) << what;
     EXPECT_NEAR(all.mean.y, 1, 3 * standard_error(all) + 2e-6) << what;
@@ -84,17 +79,6 @@ Primitive cube_at(glm::vec3 centre) {
     return cube;
 }
 
-bake::Moments radiance_along(const ReferenceFixture& fixture, glm::vec3 from, glm::vec3 direction) {
-    bake::Moments seen;
-    for (std::uint32_t i = 0; i < 4000; ++i) {
-        bake::RandomStream random(7, 0, i);
-        const auto sample = bake::trace_ray(fixture.space(), from, direction, random, {});
-        EXPECT_FALSE(sample.lost);
-        seen.add(sample.radiance);
-    }
-    return seen;
-}
-
 // Two cubes that share a face, overlap with four faces in one plane each, or are one and the same
 // are the box around both. Their coordinates are no round numbers: points of faces are rounded.
 TEST(ReferenceFurnace, BodiesOfOneMediumThatTouchOrOverlapAreOneBody) {
@@ -112,8 +96,8 @@ TEST(ReferenceFurnace, BodiesOfOneMediumThatTouchOrOverlapAreOneBody) {
             const auto whole = make_fixture(one, make_white_sky());
             for (const glm::vec3 direction : {glm::vec3(0, -1, 0), glm::vec3(0.6f, -0.8f, 0)}) {
                 const glm::vec3 from = at + glm::vec3(0.4f, 1, 0.2f) - 3.0f * direction;
-                const bake::Moments a = radiance_along(*pair, from, direction);
-                const bake::Moments b = radiance_along(*whole, from, direction);
+                const bake::Moments a = look(pair->space(), from, direction, 4000);
+                const bake::Moments b = look(whole->space(), from, direction, 4000);
                 EXPECT_NEAR(a.mean.x, b.mean.x,
                             4 * std::hypot(standard_error(a), standard_error(b)))
                     << apart << " " << eta;
@@ -136,7 +120,7 @@ TEST(ReferenceFurnace, BodiesOfOneMediumThatTouchOrOverlapAreOneBody) {
 
 // Here the light is sampled too: weights of two strategies, which vary from path to path, add up.
 TEST(ReferenceFurnace, MatchedBodyThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
-    for (const float g : {0.0f, 0.7f, -0.4f}) {
+    for (const float g : {0.7f, -0.4f}) {
         Scene input = make_scene({make_sphere(2)});
         input.materials[0].medium = make_medium(1, 1, g, 1);
         const auto body = make_fixture(std::move(input), make_white_sky());
@@ -150,10 +134,7 @@ TEST(ReferenceFurnace, HoldsForEachChannelOfAColouredMedium) {
     Scene input = make_scene({make_sphere(2)});
     input.materials[0].medium = medium;
     const auto body = make_fixture(std::move(input), make_white_sky());
-    bake::Moments all;
-    for (const bake::Moments& m : estimate(*body, 8, 20000).pixel) {
-        all.merge(m);
-    }
+    const bake::Moments all = merged(estimate(*body, 8, 20000).pixel);
     // All channels of a path share one flight, so their sum never changes.
     EXPECT_NEAR((all.mean.x + all.mean.y + all.mean.z) / 3, 1, 1e-3);
     const glm::dvec3 error = glm::sqrt(all.variance_of_mean());
@@ -185,30 +166,11 @@ TEST(ReferenceFurnace, TwoSheetsExchangeLightAsTheSeriesSays) {
         formats::Sheet{{kReflect, kReflect, kReflect}, {kTransmit, kTransmit, kTransmit}};
     input.materials[0].double_sided = true;
     const auto sheets = make_fixture(std::move(input), make_white_sky());
-    bake::Moments seen;
-    constexpr std::uint32_t kSamples = 100000;
-    for (const glm::vec3 from : {glm::vec3(0, 2, 0), glm::vec3(0, -2, 0)}) {
-        for (std::uint32_t i = 0; i < kSamples; ++i) {
-            bake::RandomStream random(7, from.y > 0 ? 1 : 0, i);
-            seen.add(bake::trace_ray(sheets->space(), from, {0, from.y > 0 ? -1.0f : 1.0f, 0},
-                                     random, {})
-                         .radiance);
-        }
-    }
+    bake::Moments seen = look(sheets->space(), {0, 2, 0}, {0, -1, 0}, 100000);
+    seen.merge(look(sheets->space(), {0, -2, 0}, {0, 1, 0}, 100000));
     const double expected = kReflect + kTransmit * kTransmit / (1 - kReflect);
     EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 1e-3);
     EXPECT_LT(standard_error(seen), 2e-3);
-}
-
-// r + t = 1: a curved sheet is as bright as its surroundings, whatever it reflects onto itself.
-// Facets under smooth normals lose 0.09 % of it on a ball of level 2, 0.02 % here.
-TEST(ReferenceFurnace, SheetThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
-    Scene input = make_scene({make_sphere(3)});
-    input.primitives[0].index.resize(input.primitives[0].index.size() / 2);
-    input.materials[0].sheet = formats::Sheet{{0.4f, 0.4f, 0.4f}, {0.6f, 0.6f, 0.6f}};
-    input.materials[0].double_sided = true;
-    const auto body = make_fixture(std::move(input), make_white_sky());
-    expect_white(estimate(*body, 8, 320000), "half a hollow ball");
 }
 
 TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {
@@ -241,18 +203,10 @@ TEST(ReferenceFurnace, LightOfACoreInACoatCountsAsTheCoats) {
     const auto body = make_fixture(std::move(input), make_white_sky());
     auto chosen = bake::choose_receivers(body->scene, 1000000, 3, kAlongNormals);
     chosen.resize(8);
-    bake::EstimateOptions options;
-    options.samples = 4000;
     const auto mean_of = [&](formats::TermSet terms) {
         bake::PathOptions paths;
         paths.terms = terms;
-        bake::Moments all;
-        const bake::Estimate found =
-            bake::estimate_receivers(body->space(paths), chosen, options, {}).value();
-        for (const bake::Moments& m : found.pixel) {
-            all.merge(m);
-        }
-        return all;
+        return mean_over(body->space(paths), chosen, 4000);
     };
     using formats::TermSet;
     EXPECT_EQ(mean_of(TermSet::interreflection).mean.y, 0);
@@ -277,14 +231,11 @@ TEST(ReferenceFurnace, OpaqueVerticesInsideABodySeeTheSkyThroughItOnly) {
     bake::PathOptions direct, across;
     direct.terms = formats::TermSet::diffuse;
     across.terms = formats::TermSet::interreflection;
+    EXPECT_EQ(mean_over(body->space(direct), chosen, 200).mean.x, 0);
     bake::EstimateOptions options;
     options.samples = 200;
-    const auto none = bake::estimate_receivers(body->space(direct), chosen, options, {}).value();
-    const auto all = bake::estimate_receivers(body->space(across), chosen, options, {}).value();
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        EXPECT_EQ(none.pixel[i].mean.x, 0);
-    }
-    expect_white(all, "plate in a ball");
+    expect_white(bake::estimate_receivers(body->space(across), chosen, options, {}).value(),
+                 "plate in a ball");
 }
 
 TEST(ReferenceEstimate, SameBitsForAnyNumberOfThreads) {

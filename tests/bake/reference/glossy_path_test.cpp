@@ -4,8 +4,6 @@
 
 #include "bake/reference/directional_albedo.h"
 #include "bake/reference/glossy_brdf.h"
-#include "bake/reference/reference_image.h"
-#include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::tests {
@@ -24,18 +22,10 @@ formats::Gloss dielectric(float roughness) {
     return gloss;
 }
 
-bake::Moments mean_over(const ReferenceFixture& fixture, bake::PathOptions options,
-                        const std::optional<glm::vec3>& eye, std::uint32_t samples) {
-    const auto chosen = bake::choose_receivers(fixture.scene, 8, 3, eye);
-    bake::EstimateOptions estimate;
-    estimate.samples = samples;
-    const auto estimated = bake::estimate_receivers(fixture.space(options), chosen, estimate, {});
-    EXPECT_TRUE(estimated);
-    bake::Moments all;
-    for (const bake::Moments& m : estimated->pixel) {
-        all.merge(m);
-    }
-    return all;
+bake::Moments along_normals(const ReferenceFixture& fixture, bake::PathOptions options,
+                            std::uint32_t samples) {
+    return mean_over(fixture.space(options),
+                     bake::choose_receivers(fixture.scene, 8, 3, std::nullopt), samples);
 }
 
 /// A disc of angular radius 0.1 in the direction of 40 degrees from +Y, irradiance pi across it.
@@ -68,14 +58,8 @@ TEST(ReferenceGlossPaths, WhiteBallsUnderWhiteLightAreWhite) {
                     return glm::dot(r.normal, r.to_eye) < 0.05f;
                 });
                 ASSERT_GT(chosen.size(), 5u);
-                bake::EstimateOptions options;
-                options.samples = 256000 / static_cast<std::uint32_t>(chosen.size());
-                const auto estimate = bake::estimate_receivers(ball->space(), chosen, options, {});
-                ASSERT_TRUE(estimate);
-                bake::Moments all;
-                for (const bake::Moments& m : estimate->pixel) {
-                    all.merge(m);
-                }
+                const bake::Moments all = mean_over(
+                    ball->space(), chosen, 64000 / static_cast<std::uint32_t>(chosen.size()));
                 EXPECT_NEAR(all.mean.y, 1, 5e-3) << roughness << " metallic " << gloss.metallic;
                 EXPECT_LT(standard_error(all), 3e-3);
             }
@@ -122,14 +106,7 @@ TEST(ReferenceGlossPaths, SunOnAPlateMatchesTheBrdf) {
                 for (bake::ReferenceReceiver& r : chosen) {
                     r.to_eye = to_eye;
                 }
-                bake::EstimateOptions options;
-                options.samples = 40000;
-                const auto estimate = bake::estimate_receivers(lit->space(), chosen, options, {});
-                ASSERT_TRUE(estimate);
-                bake::Moments all;
-                for (const bake::Moments& m : estimate->pixel) {
-                    all.merge(m);
-                }
+                const bake::Moments all = mean_over(lit->space(), chosen, 40000);
                 const double expected = lit_by_sun(gloss, to_eye).y;
                 EXPECT_NEAR(all.mean.y, expected, 4 * standard_error(all) + 1e-3 * expected)
                     << roughness << " metallic " << gloss.metallic << " eye " << to_eye.x;
@@ -149,11 +126,11 @@ TEST(ReferenceGlossPaths, LobesAreTermsOfTheirOwnAndAddUp) {
     across.terms = formats::TermSet::interreflection | formats::TermSet::single |
                    formats::TermSet::multiple | formats::TermSet::unscattered;
     no_mirror.own_mirror = false;
-    EXPECT_NEAR(mean_over(*lit, diffuse, {}, 50000).mean.x, brdf.diffuse_albedo.x, 4e-3);
-    EXPECT_NEAR(mean_over(*lit, specular, {}, 50000).mean.x, brdf.mirrored_albedo.x, 4e-3);
-    EXPECT_NEAR(mean_over(*lit, no_mirror, {}, 50000).mean.x, brdf.diffuse_albedo.x, 4e-3);
-    EXPECT_EQ(mean_over(*lit, across, {}, 500).mean.x, 0);
-    EXPECT_NEAR(mean_over(*lit, {}, {}, 50000).mean.x, 1, 5e-3);
+    EXPECT_NEAR(along_normals(*lit, diffuse, 50000).mean.x, brdf.diffuse_albedo.x, 4e-3);
+    EXPECT_NEAR(along_normals(*lit, specular, 50000).mean.x, brdf.mirrored_albedo.x, 4e-3);
+    EXPECT_NEAR(along_normals(*lit, no_mirror, 50000).mean.x, brdf.diffuse_albedo.x, 4e-3);
+    EXPECT_EQ(along_normals(*lit, across, 500).mean.x, 0);
+    EXPECT_NEAR(along_normals(*lit, {}, 50000).mean.x, 1, 5e-3);
 }
 
 TEST(ReferenceGlossPaths, LightByWayOfTwoSurfacesIsInterreflection) {
@@ -166,8 +143,8 @@ TEST(ReferenceGlossPaths, LightByWayOfTwoSurfacesIsInterreflection) {
     bake::PathOptions once, often;
     once.terms = formats::TermSet::specular;
     often.terms = formats::TermSet::interreflection;
-    const bake::Moments first = mean_over(*plates, once, {}, 20000);
-    const bake::Moments second = mean_over(*plates, often, {}, 20000);
+    const bake::Moments first = along_normals(*plates, once, 20000);
+    const bake::Moments second = along_normals(*plates, often, 20000);
     EXPECT_GT(second.mean.x, 0.1);
     EXPECT_NEAR(first.mean.x + second.mean.x, 1, 0.01);
 }
@@ -199,7 +176,7 @@ TEST(ReferenceGlossPaths, WithNeitherMetalNorSpecularPathsAreThoseOfADiffuseSurf
     formats::Gloss rough;
     rough.roughness = 0.2f;  // says nothing without a lobe
     const auto plain = plate({}, make_half_sky(true)), same = plate(rough, make_half_sky(true));
-    EXPECT_EQ(mean_over(*plain, {}, {}, 100).mean, mean_over(*same, {}, {}, 100).mean);
+    EXPECT_EQ(along_normals(*plain, {}, 100).mean, along_normals(*same, {}, 100).mean);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bake/reference/reference_receivers.h"
+#include "bake/base/frame.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::tests {
@@ -23,16 +23,11 @@ Scene floor_scene() {
 
 /// Irradiance of the floor at x, from the radiance that it sends up.
 bake::Moments irradiance_at(const ReferenceFixture& fixture, float x, std::uint32_t samples) {
-    bake::EstimateOptions options;
-    options.samples = samples;
-    const auto estimate =
-        bake::estimate_pixels(1, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            auto sample = bake::trace_ray(fixture.space(), {x, 0.01f, 0}, {0, -1, 0}, random);
-            sample.radiance *= static_cast<float>(2 * kPi);
-            return sample;
-        });
-    EXPECT_TRUE(estimate);
-    return estimate->pixel.front();
+    return merged(trace_in_parts(samples, [&](bake::RandomStream& random) {
+        auto sample = bake::trace_ray(fixture.space(), {x, 0.01f, 0}, {0, -1, 0}, random);
+        sample.radiance *= static_cast<float>(2 * kPi);
+        return sample;
+    }));
 }
 
 bake::Moments lit_by(const Light& light, float x) {
@@ -114,15 +109,12 @@ TEST(ReferenceLamps, ParallelUnitSquaresHaveTheirFormFactor) {
     scene.materials[1].base_color = {0, 0, 0};
     scene.primitives[1].material = 1;
     const auto fixture = make_fixture(std::move(scene), {});
-    bake::EstimateOptions options;
-    options.samples = 40000;
-    const auto estimate =
-        bake::estimate_pixels(1, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            const float x = random.next(), z = random.next();
-            return bake::trace_ray(fixture->space(), {x, 0.01f, z}, {0, -1, 0}, random);
-        });
+    const bake::Moments seen = merged(trace_in_parts(40000, [&](bake::RandomStream& random) {
+        const float x = random.next(), z = random.next();
+        return bake::trace_ray(fixture->space(), {x, 0.01f, z}, {0, -1, 0}, random);
+    }));
     // Exitance pi arrives times F, and leaves as radiance / pi.
-    expect_within(estimate->pixel.front(), 0.19982490);
+    expect_within(seen, 0.19982490);
 }
 
 TEST(ReferenceLamps, AFurnaceOfEmissionOneAndAlbedoHalfHasRadianceTwo) {
@@ -130,16 +122,13 @@ TEST(ReferenceLamps, AFurnaceOfEmissionOneAndAlbedoHalfHasRadianceTwo) {
     scene.materials[0].emission = {1, 1, 1};
     scene.materials[0].base_color = {0.5f, 0.5f, 0.5f};
     const auto fixture = make_fixture(std::move(scene), {});
-    bake::EstimateOptions options;
-    options.samples = 4000;
-    const auto estimate =
-        bake::estimate_pixels(6, options, {}, [&](std::uint32_t side, bake::RandomStream& random) {
+    for (int side = 0; side < 6; ++side) {
+        const bake::Moments m = merged(trace_in_parts(4000, [&](bake::RandomStream& random) {
             glm::vec3 d(2 * random.next() - 1, 2 * random.next() - 1, 2 * random.next() - 1);
-            d[static_cast<int>(side / 2)] = side % 2 == 0 ? 1.5f : -1.5f;
+            d[side / 2] = side % 2 == 0 ? 1.5f : -1.5f;
             return bake::trace_ray(fixture->space(), {0.1f, -0.2f, 0.3f}, glm::normalize(d),
                                    random);
-        });
-    for (const bake::Moments& m : estimate->pixel) {
+        }));
         expect_within(m, 2);
         EXPECT_LT(standard_error(m), 0.02);
     }
@@ -162,25 +151,16 @@ TEST(ReferenceLamps, OnlyTheFrontGlowsUnlessTheMaterialIsDoubleSided) {
 /// Mean radiance, by the cosine, that leaves a ball of radius 1 around the origin, over the whole
 /// of a sphere around it of radius 1.001.
 bake::Moments mean_exitant(const ReferenceFixture& fixture, std::uint32_t samples) {
-    bake::EstimateOptions options;
-    options.samples = samples / 16;
-    const auto estimate =
-        bake::estimate_pixels(16, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            const float y = 2 * random.next() - 1, s = std::sqrt(1 - y * y);
-            const float phi = static_cast<float>(2 * kPi) * random.next();
-            const glm::vec3 n(s * std::cos(phi), y, s * std::sin(phi));
-            const glm::vec3 t = glm::normalize(
-                glm::cross(n, std::abs(n.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
-            const float c = std::sqrt(1 - random.next()), q = std::sqrt(1 - c * c);
-            const float psi = static_cast<float>(2 * kPi) * random.next();
-            const glm::vec3 d = -c * n + q * (std::cos(psi) * t + std::sin(psi) * glm::cross(n, t));
-            return bake::trace_ray(fixture.space(), 1.001f * n, d, random);
-        });
-    bake::Moments all;
-    for (const bake::Moments& m : estimate->pixel) {
-        all.merge(m);
-    }
-    return all;
+    return merged(trace_in_parts(samples, [&](bake::RandomStream& random) {
+        const float y = 2 * random.next() - 1, s = std::sqrt(1 - y * y);
+        const float phi = static_cast<float>(2 * kPi) * random.next();
+        const glm::vec3 n(s * std::cos(phi), y, s * std::sin(phi));
+        const float c = std::sqrt(1 - random.next()), q = std::sqrt(1 - c * c);
+        const float psi = static_cast<float>(2 * kPi) * random.next();
+        const glm::vec3 d =
+            bake::make_frame(-n).to_world({q * std::cos(psi), q * std::sin(psi), c});
+        return bake::trace_ray(fixture.space(), 1.001f * n, d, random);
+    }));
 }
 
 TEST(ReferenceLamps, AllPowerOfALampInAWhiteMediumLeavesItsBody) {

@@ -17,20 +17,9 @@ Scene tilted_floor(std::uint8_t x, std::uint8_t z, float sign) {
 }
 
 float seen_under_sun(Scene scene, glm::vec3 travel) {
-    formats::Light& sun = scene.lights.emplace_back();
-    sun.type = formats::Light::Type::directional;
-    sun.direction = glm::normalize(travel);
-    const float pi = std::numbers::pi_v<float>;
-    sun.intensity = {pi, pi, pi};
+    scene.lights.push_back(unit_sun(travel));
     const auto fixture = make_fixture(std::move(scene), {});
-    bake::EstimateOptions options;
-    options.samples = 4;
-    const auto estimate =
-        bake::estimate_pixels(1, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            return bake::trace_ray(fixture->space(), {0.2f, 2, 0.1f}, {0, -1, 0}, random);
-        });
-    EXPECT_TRUE(estimate);
-    return static_cast<float>(estimate->pixel.front().mean.x);
+    return static_cast<float>(look(fixture->space(), {0.2f, 2, 0.1f}, {0, -1, 0}, 16).mean.x);
 }
 
 TEST(ReferenceNormalMap, TiltsTheCosineOfASunAndKeepsTheTrianglesSides) {

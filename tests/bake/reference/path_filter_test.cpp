@@ -8,11 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "bake/path_differentials/smooth_event.h"
+#include "bake/path_differentials/bounded_change.h"
 #include "bake/path_differentials/surface_shape.h"
 #include "bake/reference/glossy_brdf.h"
 #include "bake/reference/rough_boundary.h"
-#include "tests/bake/path_differentials/transfer.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/reference/textured_board.h"
 
@@ -25,6 +24,21 @@ using bake::TextureFiltering;
 /// Of the parallelogram that has these moments, in texture coordinates.
 double area_of(const bake::UvMoments& m) {
     return std::sqrt(static_cast<double>(m.uu) * m.vv - static_cast<double>(m.uv) * m.uv);
+}
+
+void expect_moments(const bake::UvMoments& found, const bake::UvMoments& expected, double rel) {
+    EXPECT_GT(expected.uu, 0);
+    EXPECT_NEAR(found.uu / expected.uu, 1, rel);
+    EXPECT_NEAR(found.vv / expected.vv, 1, rel);
+    EXPECT_NEAR((found.uv - expected.uv) / std::sqrt(expected.uu * expected.vv), 0, rel);
+}
+
+bake::SurfaceHit hit_at(float distance, glm::vec3 position, glm::vec3 normal) {
+    bake::SurfaceHit hit;
+    hit.distance = distance;
+    hit.position = position;
+    hit.flat = hit.smooth = normal;
+    return hit;
 }
 
 TEST(PathFilter, APixelOnABoardIsItsAngleTimesTheDistance) {
@@ -48,11 +62,7 @@ TEST(PathFilter, AMirrorUnfoldsTheCamera) {
         const glm::vec3 up(0, 1, 0);
         if (through_mirror) {
             // From below: 1 m up to a flat mirror and 2 m down to the board.
-            bake::SurfaceHit mirror;
-            mirror.distance = 1;
-            mirror.position = {0.3f, 2, 0.1f};
-            mirror.flat = mirror.smooth = -up;
-            filter.arrive(scene, up, mirror);
+            filter.arrive(scene, up, hit_at(1, {0.3f, 2, 0.1f}, -up));
             filter.mirror(up, -up);
         }
         const float height = through_mirror ? 2 : 3;
@@ -78,10 +88,7 @@ TEST(PathFilter, AnEventSpreadsItsDensityOverTheSurface) {
     int checked = 0;
     while (checked < 60) {
         const bool glossy = checked % 2 == 0;
-        bake::SurfaceHit start;
-        start.distance = 1;
-        start.position = {0, 1, 0};
-        start.flat = start.smooth = normal;
+        const bake::SurfaceHit start = hit_at(1, {0, 1, 0}, normal);
         PathFilter filter(filtering, glm::vec3(0), glm::vec3(0));
         filter.arrive(scene, in, start);
         glm::vec3 out;
@@ -130,10 +137,7 @@ TEST(PathFilter, ARefractingFacetSpreadsItsDensityOverTheSurface) {
             if (!sample || sample->direction.y > -0.5f) {
                 continue;  // where a secant replaces the derivative
             }
-            bake::SurfaceHit start;
-            start.distance = 1;
-            start.position = {0, 1, 0};
-            start.flat = start.smooth = normal;
+            const bake::SurfaceHit start = hit_at(1, {0, 1, 0}, normal);
             PathFilter filter(filtering, glm::vec3(0), glm::vec3(0));
             filter.arrive(scene, in, start);
             filter.scatter_on_facets(in, normal, 0.25f, sample->direction, ratio);
@@ -170,19 +174,13 @@ TEST(PathFilter, AFacetAtTheNormalOfACurvedBoundaryRefractsAsTheBoundaryDoes) {
             rough ? filter.scatter_on_facets(in, ball->smooth, 0.3f, out, ratio)
                   : filter.refract(in, ball->smooth, ratio);
             // The board, as if nothing were in between.
-            bake::SurfaceHit board;
-            board.distance = -ball->position.y / out.y;
-            board.position = ball->position + board.distance * out;
-            board.flat = board.smooth = {0, 1, 0};
+            const float distance = -ball->position.y / out.y;
+            auto board = hit_at(distance, ball->position + distance * out, {0, 1, 0});
             board.primitive = 0;
             filter.arrive(scene, out, board);
             return filter.view().moments;
         };
-        const bake::UvMoments smooth = moments_of(false), rough = moments_of(true);
-        EXPECT_GT(smooth.uu, 0);
-        EXPECT_NEAR(rough.uu / smooth.uu, 1, 1e-3);
-        EXPECT_NEAR(rough.vv / smooth.vv, 1, 1e-3);
-        EXPECT_NEAR((rough.uv - smooth.uv) / std::sqrt(smooth.uu * smooth.vv), 0, 1e-3);
+        expect_moments(moments_of(true), moments_of(false), 1e-3);
     }
 }
 
@@ -209,34 +207,28 @@ TEST(PathFilter, ACurvedMirrorIsThatOfPathDifferentials) {
     EXPECT_TRUE(filter.arrive(scene, out, *board));
 
     const Primitive& p = scene.primitives[1];
-    std::array<glm::dvec3, 3> corners;
-    bake::TriangleAttributes attributes;
+    std::array<glm::dvec3, 3> corners, normals;
     for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t corner = p.index[3 * std::size_t{ball->triangle} + k];
         corners[k] = glm::dvec3(p.position[corner]);
-        attributes.normal[k] = glm::dvec3(p.normal[corner]);
+        normals[k] = glm::dvec3(p.normal[corner]);
     }
-    const bake::SurfaceShape shape = bake::interpolated_shape(
-        bake::triangle_gradients(corners, glm::dvec3(ball->position)), attributes);
+    const bake::SurfaceShape shape =
+        bake::interpolated_shape(corners, normals, glm::dvec3(ball->position));
     const bake::Mirror mirror = bake::make_mirror(glm::dvec3(in), shape.N);
     bake::UvMoments expected;
     for (const glm::dvec3& dD : start) {
-        const glm::dvec3 dP = bake::transfer_to_plane(glm::dvec3(in), glm::dvec3(ball->flat),
-                                                      ball->distance, glm::dvec3(0), dD)
-                                  .dP;
+        const glm::dvec3 dP = bake::bounded_transfer(glm::dvec3(in), glm::dvec3(ball->flat),
+                                                     ball->distance, glm::dvec3(0), dD);
         const glm::dvec3 dR = mirror.change(dD, shape.dN_dP * dP);
-        const glm::dvec3 at = bake::transfer_to_plane(glm::dvec3(out), glm::dvec3(board->flat),
-                                                      board->distance, dP, dR)
-                                  .dP;
+        const glm::dvec3 at = bake::bounded_transfer(glm::dvec3(out), glm::dvec3(board->flat),
+                                                     board->distance, dP, dR);
         const glm::vec2 uv(0.5 * at.x, 0.5 * at.z);
         expected.uu += uv.x * uv.x;
         expected.uv += uv.x * uv.y;
         expected.vv += uv.y * uv.y;
     }
-    const bake::UvMoments found = filter.view().moments;
-    EXPECT_NEAR(found.uu / expected.uu, 1, 1e-3);
-    EXPECT_NEAR(found.vv / expected.vv, 1, 1e-3);
-    EXPECT_NEAR((found.uv - expected.uv) / std::sqrt(expected.uu * expected.vv), 0, 1e-3);
+    expect_moments(filter.view().moments, expected, 1e-3);
 }
 
 // A pane of index 1.5, 0.7 m thick, at normal incidence: a spread a becomes a (d1 + h / 1.5 + d2).
@@ -246,14 +238,9 @@ TEST(PathFilter, APaneBringsTheBoardCloser) {
     const TextureFiltering filtering = filtering_of(scene, 1);
     const glm::vec3 up(0, 1, 0);
     PathFilter filter(filtering, {0.01f, 0, 0}, {0, 0, 0.01f});
-    bake::SurfaceHit side;
-    side.distance = 2;
-    side.position = {0.3f, 1.7f, 0.1f};
-    side.flat = side.smooth = up;
-    filter.arrive(scene, -up, side);
+    filter.arrive(scene, -up, hit_at(2, {0.3f, 1.7f, 0.1f}, up));
     filter.refract(-up, up, 1.5f);
-    side.distance = 0.7f;
-    side.position.y = 1;
+    const bake::SurfaceHit side = hit_at(0.7f, {0.3f, 1, 0.1f}, up);
     filter.arrive(scene, -up, side);
     filter.refract(-up, up, 1 / 1.5f);
     const auto board = fixture->scene.surfaces.closest_hit({side.position}, -up, 100);
@@ -312,11 +299,7 @@ TEST(PathFilter, MomentsOfManyScatteringsAreThoseOfEachTogether) {
         sum.uv += one.uv;
         sum.vv += one.vv;
     }
-    const bake::UvMoments all = moments_of(kEvents);
-    EXPECT_GT(all.uu, 0);
-    EXPECT_NEAR(all.uu / sum.uu, 1, 1e-4);
-    EXPECT_NEAR(all.vv / sum.vv, 1, 1e-4);
-    EXPECT_NEAR((all.uv - sum.uv) / std::sqrt(sum.uu * sum.vv), 0, 1e-4);
+    expect_moments(moments_of(kEvents), sum, 1e-4);
 }
 
 // The limit shortens steps over which the density changes, from the second scattering on alone.
@@ -329,10 +312,7 @@ TEST(PathFilter, TheGradientLimitHoldsFromTheSecondScatteringOn) {
         filtering.extent = 1e9f;
         PathFilter filter(filtering, glm::vec3(0), glm::vec3(0));
         const glm::vec3 out = glm::normalize(glm::vec3(0.5f, 1, 0));
-        bake::SurfaceHit hit;
-        hit.distance = 1;
-        hit.position = {0, 0, 0};
-        hit.flat = hit.smooth = {0, 1, 0};
+        const bake::SurfaceHit hit = hit_at(1, glm::vec3(0), {0, 1, 0});
         for (int i = 0; i < scatterings; ++i) {
             filter.arrive(scene, -out, hit);
             filter.scatter_on_facets({0, -1, 0}, hit.flat, 0.2f, out);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -10,6 +11,8 @@
 
 #include "bake/reference/estimate.h"
 #include "bake/reference/path.h"
+#include "bake/reference/reference_image.h"
+#include "bake/reference/reference_receivers.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::tests {
@@ -82,32 +85,71 @@ inline Scene make_slab(const formats::Medium& medium, float thickness) {
     return scene;
 }
 
+inline bake::Moments merged(const std::vector<bake::Moments>& parts) {
+    bake::Moments all;
+    for (const bake::Moments& m : parts) {
+        all.merge(m);
+    }
+    return all;
+}
+
+/// `samples` of what `trace` finds with a stream of random numbers, in 16 independent parts.
+template <class Trace>
+std::vector<bake::Moments> trace_in_parts(std::uint32_t samples, Trace&& trace) {
+    bake::EstimateOptions options;
+    options.samples = std::max(samples / 16, 1u);
+    auto estimate = bake::estimate_pixels(
+        16, options, {}, [&](std::uint32_t, bake::RandomStream& random) { return trace(random); });
+    EXPECT_TRUE(estimate);
+    EXPECT_LT(static_cast<double>(estimate->lost), 1e-5 * samples + 0.5);
+    return std::move(estimate->pixel);
+}
+
+/// Radiance along one ray.
+inline bake::Moments look(const bake::PathSpace& space, glm::vec3 from, glm::vec3 direction,
+                          std::uint32_t samples, const bake::SurroundingMedia& around = {}) {
+    return merged(trace_in_parts(samples, [&](bake::RandomStream& random) {
+        return bake::trace_ray(space, from, direction, random, around);
+    }));
+}
+
 /// Radiance that leaves a slab upward, in 16 independent parts: toward a direction of cosine
 /// `cosine` to the normal, or where that is 0 averaged over directions with the cosine as weight.
 /// Not near the slab's middle, where its triangles meet.
 inline std::vector<bake::Moments> look_down_in_parts(const bake::PathSpace& space, float top,
                                                      float cosine, std::uint32_t samples) {
-    bake::EstimateOptions options;
-    options.samples = samples / 16;
-    auto estimate =
-        bake::estimate_pixels(16, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            const float c = cosine > 0 ? cosine : std::sqrt(1 - random.next());
-            const float s = std::sqrt(1 - c * c);
-            const glm::vec3 direction(s * 0.8f, -c, s * 0.6f);
-            const float x = 20 * random.next() + 3, z = 20 * random.next() - 40;
-            return bake::trace_ray(space, 2 * top * glm::vec3(x, 1, z), direction, random);
-        });
-    EXPECT_TRUE(estimate);
-    EXPECT_LT(static_cast<double>(estimate->lost), 1e-5 * samples + 0.5);
-    return std::move(estimate->pixel);
+    return trace_in_parts(samples, [&](bake::RandomStream& random) {
+        const float c = cosine > 0 ? cosine : std::sqrt(1 - random.next());
+        const float s = std::sqrt(1 - c * c);
+        const glm::vec3 direction(s * 0.8f, -c, s * 0.6f);
+        const float x = 20 * random.next() + 3, z = 20 * random.next() - 40;
+        return bake::trace_ray(space, 2 * top * glm::vec3(x, 1, z), direction, random);
+    });
 }
 inline bake::Moments look_down(const bake::PathSpace& space, float top, float cosine,
                                std::uint32_t samples) {
-    bake::Moments all;
-    for (const bake::Moments& m : look_down_in_parts(space, top, cosine, samples)) {
-        all.merge(m);
-    }
-    return all;
+    return merged(look_down_in_parts(space, top, cosine, samples));
+}
+
+/// Radiance of receivers, so many samples of each.
+inline bake::Moments mean_over(const bake::PathSpace& space,
+                               const std::vector<bake::ReferenceReceiver>& receivers,
+                               std::uint32_t samples) {
+    bake::EstimateOptions options;
+    options.samples = samples;
+    const auto estimate = bake::estimate_receivers(space, receivers, options, {});
+    EXPECT_TRUE(estimate);
+    return merged(estimate->pixel);
+}
+
+/// A sun that gives white surfaces which face it a radiance of 1.
+inline formats::Light unit_sun(glm::vec3 travel) {
+    const float pi = std::numbers::pi_v<float>;
+    formats::Light sun;
+    sun.type = formats::Light::Type::directional;
+    sun.direction = glm::normalize(travel);
+    sun.intensity = {pi, pi, pi};
+    return sun;
 }
 
 inline double standard_error(const bake::Moments& m) {

@@ -5,8 +5,6 @@
 #include <string>
 
 #include "bake/reference/ggx.h"
-#include "bake/reference/reference_image.h"
-#include "bake/reference/reference_receivers.h"
 #include "bake/reference/rough_boundary.h"
 #include "tests/bake/reference/reference_support.h"
 
@@ -17,22 +15,6 @@ formats::Medium rough_glass(float roughness, float sigma_a = 1e-12f, float eta =
     formats::Medium glass = make_medium(sigma_a, 0, 0, eta);
     glass.roughness = roughness;
     return glass;
-}
-
-bake::Moments rays_of(const bake::PathSpace& space, glm::vec3 from, glm::vec3 direction,
-                      std::uint32_t samples, const bake::SurroundingMedia& around = {}) {
-    bake::EstimateOptions options;
-    options.samples = samples / 16;
-    const auto estimate =
-        bake::estimate_pixels(16, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            return bake::trace_ray(space, from, direction, random, around);
-        });
-    EXPECT_TRUE(estimate);
-    bake::Moments all;
-    for (const bake::Moments& m : estimate->pixel) {
-        all.merge(m);
-    }
-    return all;
 }
 
 // The sky sends 1, a black plate right under the boundary as much per squared index: what is seen
@@ -60,8 +42,8 @@ TEST(RoughGlass, AFurnaceOnBothSidesShowsWhatFacetsReturn) {
                 const auto s = sample_rough_boundary(boundary, u, v, random.next());
                 kept += s ? static_cast<double>(s->weight) / kSamples : 0;
             }
-            const bake::Moments seen = rays_of(
-                scene->space(), glm::vec3(0.7f, 0.125f, 0.3f) + 2.0f * to_eye, -to_eye, 80000);
+            const bake::Moments seen =
+                look(scene->space(), glm::vec3(0.7f, 0.125f, 0.3f) + 2.0f * to_eye, -to_eye, 80000);
             EXPECT_NEAR(seen.mean.y, kept, 4 * standard_error(seen) + 2e-3)
                 << roughness << ' ' << cosine;
             EXPECT_LT(standard_error(seen), 4e-3);
@@ -91,53 +73,37 @@ std::unique_ptr<ReferenceFixture> slab_under_sun(bool is_disc) {
 }
 
 // An eye inside, looking up and out: a sun that no path would find is sampled through the boundary.
-// What else reaches the eye was reflected inside first.
-TEST(RoughGlass, ASunShinesThroughTheBoundaryAsFacetsRefractIt) {
+// What else reaches the eye was reflected inside first. An eye outside sees it mirrored.
+TEST(RoughGlass, ASunShinesThroughTheBoundaryAndIsMirroredAsFacetsSay) {
     bake::PathOptions once;
     once.max_depth = 1;
-    const glm::vec3 up = glm::normalize(glm::vec3(0.2f, 1, 0.1f));
-    const auto boundary = bake::make_rough_boundary(
-        {0, -1, 0}, -up, static_cast<float>(bake::ggx_alpha(double{kRoughness})), 1 / 1.5f);
-    const double expected =
-        static_cast<double>(kIrradiance * eval_rough_boundary(boundary, kToSun).response);
-    ASSERT_GT(expected, 0.1);
-    for (const bool is_disc : {true, false}) {
-        const auto scene = slab_under_sun(is_disc);
-        bake::SurroundingMedia inside;
-        inside.enter(0);
-        const bake::Moments seen = rays_of(scene->space(once), {0.7f, 0, 0.3f}, up, 40000, inside);
-        EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 3e-3 * expected) << is_disc;
-    }
-}
-
-TEST(RoughGlass, ASunIsReflectedAsFacetsMirrorIt) {
-    bake::PathOptions once;
-    once.max_depth = 1;
-    const glm::vec3 to_eye = glm::normalize(glm::vec3(-0.3f, 1, 0));
-    const auto boundary = bake::make_rough_boundary(
-        {0, 1, 0}, to_eye, static_cast<float>(bake::ggx_alpha(double{kRoughness})), 1.5f);
-    const double expected =
-        static_cast<double>(kIrradiance * eval_rough_boundary(boundary, kToSun).response);
-    for (const bool is_disc : {true, false}) {
-        const auto scene = slab_under_sun(is_disc);
-        const bake::Moments seen = rays_of(
-            scene->space(once), glm::vec3(0.7f, 0.125f, 0.3f) + 2.0f * to_eye, -to_eye, 40000);
-        EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 3e-3 * expected) << is_disc;
+    const auto alpha = static_cast<float>(bake::ggx_alpha(double{kRoughness}));
+    bake::SurroundingMedia inside;
+    inside.enter(0);
+    for (const bool is_inside : {true, false}) {
+        const glm::vec3 to_eye =
+            -glm::normalize(is_inside ? glm::vec3(0.2f, 1, 0.1f) : glm::vec3(0.3f, -1, 0));
+        const auto boundary = bake::make_rough_boundary({0, is_inside ? -1 : 1, 0}, to_eye, alpha,
+                                                        is_inside ? 1 / 1.5f : 1.5f);
+        const double expected =
+            static_cast<double>(kIrradiance * eval_rough_boundary(boundary, kToSun).response);
+        ASSERT_GT(expected, is_inside ? 0.1 : 0);
+        const glm::vec3 from =
+            is_inside ? glm::vec3(0.7f, 0, 0.3f) : glm::vec3(0.7f, 0.125f, 0.3f) + 2.0f * to_eye;
+        for (const bool is_disc : {true, false}) {
+            const auto scene = slab_under_sun(is_disc);
+            const bake::Moments seen = look(scene->space(once), from, -to_eye, 40000,
+                                            is_inside ? inside : bake::SurroundingMedia{});
+            EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 3e-3 * expected)
+                << is_inside << is_disc;
+        }
     }
 }
 
 bake::Moments seen_from(const ReferenceFixture& fixture, bake::PathOptions options,
                         std::uint32_t samples) {
-    const auto chosen = bake::choose_receivers(fixture.scene, 12, 3, glm::vec3(0, 500, 0));
-    bake::EstimateOptions estimate;
-    estimate.samples = samples;
-    bake::Moments all;
-    const auto found = bake::estimate_receivers(fixture.space(options), chosen, estimate, {});
-    EXPECT_TRUE(found);
-    for (const bake::Moments& m : found->pixel) {
-        all.merge(m);
-    }
-    return all;
+    return mean_over(fixture.space(options),
+                     bake::choose_receivers(fixture.scene, 12, 3, glm::vec3(0, 500, 0)), samples);
 }
 
 std::unique_ptr<ReferenceFixture> glass_ball(const formats::Medium& glass, bool lit_from_above) {

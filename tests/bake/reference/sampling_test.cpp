@@ -33,7 +33,7 @@ TEST(ReferencePhase, CosinesAreDistributedAsTheirDensitySays) {
     for (const PhaseFunction& function : some_phase_functions()) {
         const bake::PhaseSampler sampler = bake::make_phase_sampler(function);
         double expected[3] = {}, total = 0;
-        constexpr int kSteps = 400000;
+        constexpr int kSteps = 100000;
         for (int i = 0; i < kSteps; ++i) {
             // Even in angle: narrow peaks lie at its ends.
             const double angle = std::numbers::pi * (i + 0.5) / kSteps, c = std::cos(angle);

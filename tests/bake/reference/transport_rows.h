@@ -97,4 +97,28 @@ inline void expect_within(const TransportRow& row, const bake::Moments& m, doubl
     EXPECT_LT(error, std::max(0.004, 0.03 * row.value)) << row.name() << ": the test says little";
 }
 
+/// Weights that leave a slab or volume under a beam, by reciprocity: radiance along the beam under
+/// light that is 1 ahead, 1 behind, or the cosine to the beam. `see`: under a sky, what was
+/// scattered at most so often.
+template <class See>
+void expect_escape(const TransportRow& row, double limit, std::uint32_t samples, See&& see) {
+    constexpr std::uint32_t kAll = 0xffffffffu;
+    if (row.quantity == "exit_unscattered") {
+        // The only randomness is whether a path passes: rarely, where that is unlikely.
+        const bake::Moments m = see(make_white_sky(), 0);
+        EXPECT_NEAR(m.mean.x, row.value, 4 * std::sqrt(row.value / samples) + 2e-6) << row.name();
+        return;
+    }
+    bake::Moments m;
+    if (row.quantity == "exit_mean_cos") {
+        m = see(make_cosine_sky(row.march), kAll);
+        const bake::Moments back = see(make_cosine_sky(-row.march), kAll);
+        m.mean -= back.mean;
+        m.squares += back.squares;  // of as many samples
+    } else {
+        m = see(make_half_sky((row.quantity == "exit_forward") == (row.march.y > 0)), kAll);
+    }
+    expect_within(row, m, limit);
+}
+
 }  // namespace opaline::tests

@@ -23,20 +23,7 @@ inline std::unique_ptr<ReferenceFixture> make_volume_fixture(std::vector<formats
 
 inline bake::Moments look(const ReferenceFixture& fixture, glm::vec3 from, glm::vec3 direction,
                           bake::PathOptions options, std::uint32_t samples) {
-    const bake::PathSpace space = fixture.space(options);
-    bake::EstimateOptions wanted;
-    wanted.samples = samples / 16;
-    const auto estimate =
-        bake::estimate_pixels(16, wanted, {}, [&](std::uint32_t, bake::RandomStream& random) {
-            return bake::trace_ray(space, from, direction, random);
-        });
-    EXPECT_TRUE(estimate);
-    EXPECT_EQ(estimate->lost, 0u);
-    bake::Moments all;
-    for (const bake::Moments& m : estimate->pixel) {
-        all.merge(m);
-    }
-    return all;
+    return look(fixture.space(options), from, direction, samples);
 }
 
 // The blobs and balls of the table as grids; what voxels of a 16th or 32nd leave is below the

@@ -18,6 +18,7 @@ using tests::make_translucent_scene;
 using tests::seen_from;
 using tests::set_up;
 using tests::SingleSetup;
+using tests::vertex_at;
 
 using tests::kIsotropic;
 
@@ -27,18 +28,6 @@ std::vector<float> henyey_greenstein_series(float g, std::size_t degrees) {
         lambda.push_back(g * lambda.back());
     }
     return lambda;
-}
-
-// The vertex nearest to a position.
-std::size_t vertex_at(const SingleSetup& setup, glm::vec3 position) {
-    std::size_t best = 0;
-    for (std::size_t p = 1; p < setup.points.size(); ++p) {
-        if (glm::distance(setup.points[p].position, position) <
-            glm::distance(setup.points[best].position, position)) {
-            best = p;
-        }
-    }
-    return best;
 }
 
 // A box 2 wide and deep and `height` high, centred.
@@ -110,21 +99,6 @@ TEST(PhaseTerms, HalfSpaceAgreesWithTheTruncatedPhaseFunction) {
     }
 }
 
-TEST(PhaseTerms, WithoutPreferenceFourTermsEqualOne) {
-    const auto four = make_box(0.5f, make_grey_medium(3, 0.3f), {1, 0});
-    const auto one = make_box(0.5f, make_grey_medium(3, 0.3f), {1});
-    const DirectionSet directions = make_direction_set(8);
-    const std::size_t p = vertex_at(four, {0, 0.25f, 0});
-    const auto a = gather(four, directions, p), b = gather(one, directions, p);
-    const auto seen = seen_from(a, 4, glm::normalize(glm::vec3(0.3f, 0.8f, 0.1f)));
-    for (std::size_t j = 0; j < b.size(); ++j) {
-        EXPECT_NEAR(seen[j], b[j], 1e-6f * b[j] + 1e-12f) << j;
-    }
-    for (std::size_t j = b.size(); j < a.size(); ++j) {
-        EXPECT_EQ(a[j], 0) << j;
-    }
-}
-
 TEST(PhaseTerms, TheOppositePreferenceMirrorsTheView) {
     const auto forward =
         make_box(0.5f, make_grey_medium(3, 0.3f), henyey_greenstein_series(0.25f, 3));
@@ -142,18 +116,6 @@ TEST(PhaseTerms, TheOppositePreferenceMirrorsTheView) {
         difference += std::abs(double{seen[j] - same[j]});
     }
     EXPECT_GT(difference, 0.1);  // and unmirrored they differ
-}
-
-TEST(PhaseTerms, ThinSheetLitFromBehindIsBrighterTheMoreItScattersForward) {
-    double previous = 0;
-    for (const float g : {-0.25f, 0.0f, 0.25f}) {
-        const auto setup = make_box(0.02f, make_grey_medium(20, 1), henyey_greenstein_series(g, 2));
-        const std::size_t top = vertex_at(setup, {0, 0.01f, 0});
-        const auto behind = tests::make_cone({0, -1, 0}, 0.9);
-        const float seen = seen_from(gather(setup, behind, top), 4, {0, 1, 0})[0];
-        EXPECT_GT(seen, 1.5 * previous) << g;  // (1 + 3 g cos) for a cosine of .94: .3, 1, 1.7
-        previous = double{seen};
-    }
 }
 
 }  // namespace

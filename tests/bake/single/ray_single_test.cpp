@@ -15,6 +15,7 @@ using tests::gather;
 using tests::make_grey_medium;
 using tests::make_translucent_scene;
 using tests::set_up;
+using tests::vertex_at;
 
 using tests::kIsotropic;
 
@@ -55,11 +56,7 @@ TEST(RaySingle, WideSlabIsAHalfSpace) {
             make_grey_medium(static_cast<float>(sigma_s), static_cast<float>(sigma_t - sigma_s),
                              static_cast<float>(row.number("eta")))));
         use_fine_quadrature(setup.medium, row.input.at("jac") == "exact");
-        std::size_t middle = 0;
-        while (glm::distance(setup.points[middle].position,
-                             glm::vec3(0, static_cast<float>(200 / sigma_t), 0)) > 1e-3f) {
-            ++middle;
-        }
+        const std::size_t middle = vertex_at(setup, {0, static_cast<float>(200 / sigma_t), 0});
         const auto cone = tests::make_cone({0, 1, 0}, row.number("cos_i"));
         // Only rounding: coefficients are floats, and so is the sum.
         EXPECT_NEAR(gather(setup, cone, middle)[0], row.expected, row.tolerance_or(3e-5))
@@ -147,10 +144,7 @@ TEST(RaySingle, AnotherLimbOfTheBodyBlocksLight) {
     const auto lower = tests::make_cube(2, false);
     const auto upper = tests::transformed(lower, glm::mat3(1), 3, {0, 6, 0});
     const auto setup = set_up(make_translucent_scene({lower, upper}, make_grey_medium(1, 0.1f)));
-    std::size_t top = 0;
-    while (glm::distance(setup.points[top].position, glm::vec3(0, 1, 0)) > 1e-3f) {
-        ++top;
-    }
+    const std::size_t top = vertex_at(setup, {0, 1, 0});
     EXPECT_EQ(gather(setup, tests::make_cone({0, 1, 0}, 0.99), top)[0], 0);
     EXPECT_GT(gather(setup, tests::make_cone({0, 1, 0}, 0.1), top)[0], 0);
 }
@@ -182,10 +176,8 @@ TEST(RaySingle, HolesAreCountedAndDark) {
     const DirectionSet directions = make_direction_set(8);
     gather(closed, directions, 0, &counts);
     EXPECT_EQ(counts.missing, 0u);
-    std::size_t opposite = 0;  // amid the -z side, looking through the hole
-    while (glm::distance(open.points[opposite].position, glm::vec3(0, 0, -1)) > 1e-3f) {
-        ++opposite;
-    }
+    // Amid the -z side, looking through the hole.
+    const std::size_t opposite = vertex_at(open, {0, 0, -1});
     const auto transport = gather(open, directions, opposite, &counts);
     EXPECT_GT(counts.missing, 0u);
     EXPECT_GT(tests::dot_one(transport, directions).x, 0);

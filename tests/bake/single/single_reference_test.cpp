@@ -20,16 +20,23 @@ Interface<double> interface_of(const tests::ReferenceRow& row) {
     return {row.number("eta"), jacobian == row.input.end() || jacobian->second == "exact"};
 }
 
-// T_p of a unit sphere at depth s below the point whose normal makes the given cosine with the
-// light, isotropic, path inside by the chord to the sphere.
-double sphere_entry(const Interface<double>& side, double sigma_t, double radius, double s,
-                    double cos_light) {
-    const double r = radius - s;  // signed distance from the centre along the normal
-    const double along = r * cos_light;
-    const double chord = std::sqrt(along * along + (radius - r) * (radius + r)) - along;
-    const double cosine = (along + chord) / radius;
-    const Entry<double> e = enter(cosine, side);
-    return kIsotropic * e.throughput * std::exp(-sigma_t * chord * e.path_ratio);
+// T_1 of a sphere at a point whose normal makes the given cosine with the light: isotropic, the
+// path inside by the chord to the sphere.
+double sphere(const tests::ReferenceRow& row, const PathRule& rule, double sigma_m) {
+    const Interface<double> side = interface_of(row);
+    const double radius = row.number("radius"), sigma_s = row.number("sigma_s");
+    const double sigma_t = sigma_s + row.number("sigma_a");
+    double sum = 0;
+    for (const PathNode& node :
+         place_path_nodes(rule, grey(sigma_s, sigma_t, sigma_m), 2 * radius)) {
+        const double r = radius - node.depth;  // signed distance from the centre along the normal
+        const double along = r * row.number("cos_light");
+        const double chord = std::sqrt(along * along + (radius - r) * (radius + r)) - along;
+        const Entry<double> e = enter((along + chord) / radius, side);
+        sum +=
+            node.weight[0] * kIsotropic * e.throughput * std::exp(-sigma_t * chord * e.path_ratio);
+    }
+    return sum;
 }
 
 template <class Value>
@@ -40,31 +47,27 @@ void expect_rows(const char* check, Value&& value) {
     }
 }
 
-TEST(SingleReference, RefractedCosine) {
+PathRule midpoints(const tests::ReferenceRow& row) {
+    return make_midpoint_rule(static_cast<std::uint32_t>(row.number("N")));
+}
+
+TEST(SingleReference, EntryAndMidpoints) {
     expect_rows("refracted_cos", [](const auto& row) {
         return enter(row.number("cos_i"), interface_of(row)).refracted_cosine;
     });
-}
-
-TEST(SingleReference, RefractedPathKeepsItsDepthBelowTheTangentPlane) {
+    // The path keeps its depth below the tangent plane.
     expect_rows("refracted_path", [](const auto& row) {
         return row.number("s_i") * enter(row.number("cos_i"), interface_of(row)).path_ratio;
     });
-}
-
-TEST(SingleReference, Jacobian) {
     expect_rows("ss_jacobian", [](const auto& row) {
         const double eta = row.number("eta"), c = row.number("cos_i");
         // The ratio of both forms of the throughput.
         return enter(c, Interface<double>{eta, true}).throughput /
                enter(c, Interface<double>{eta, false}).throughput;
     });
-}
-
-TEST(SingleReference, FirstAndLastMidpoint) {
     const auto nodes = [](const auto& row) {
-        return place_path_nodes(make_midpoint_rule(static_cast<std::uint32_t>(row.number("N"))),
-                                grey(1, 1, row.number("sigma_m")), row.number("d_m"));
+        return place_path_nodes(midpoints(row), grey(1, 1, row.number("sigma_m")),
+                                row.number("d_m"));
     };
     expect_rows("ss16_s_first", [&](const auto& row) { return nodes(row).front().depth; });
     expect_rows("ss16_s_last", [&](const auto& row) { return nodes(row).back().depth; });
@@ -79,34 +82,16 @@ double slab(const PathRule& rule, const PathMedium& medium, double length) {
     return sum;
 }
 
-TEST(SingleReference, SlabByMidpoints) {
+TEST(SingleReference, SlabByMidpointsAndByGauss) {
     expect_rows("ss16_slab", [](const auto& row) {
-        return slab(make_midpoint_rule(static_cast<std::uint32_t>(row.number("N"))),
+        return slab(midpoints(row),
                     grey(row.number("sigma_s"), row.number("sigma_t"), row.number("sigma_m")),
                     row.number("d_m"));
     });
-}
-
-TEST(SingleReference, SlabByGaussReachesTheTruth) {
     expect_rows("ss_slab_true", [](const auto& row) {
         return slab(make_gauss_rule(8),
                     grey(row.number("sigma_s"), row.number("sigma_t"), row.number("sigma_t")),
                     row.number("d_m"));
-    });
-}
-
-TEST(SingleReference, HalfSpaceUnderOneDirection) {
-    expect_rows("ss_plane_T1", [](const auto& row) {
-        const double sigma_t = row.number("sigma_t"), c = row.number("cos_i");
-        const Entry<double> e = enter(c, interface_of(row));
-        double sum = 0;
-        // 400 nodes uniform in s over 60 mean free paths: spectral for an exponential.
-        for (const PathNode& node : place_path_nodes(
-                 make_gauss_rule(400), grey(row.number("sigma_s"), sigma_t, 0), 60 / sigma_t)) {
-            sum += node.weight[0] * kIsotropic * e.throughput *
-                   std::exp(-sigma_t * node.depth / c * e.path_ratio);
-        }
-        return sum;
     });
 }
 
@@ -134,33 +119,11 @@ TEST(SingleReference, HalfSpaceReflectancePerAlbedo) {
     });
 }
 
-TEST(SingleReference, SphereByFineQuadrature) {
-    expect_rows("sphere_T1", [](const auto& row) {
-        const double radius = row.number("radius"), sigma_s = row.number("sigma_s");
-        const double sigma_t = sigma_s + row.number("sigma_a");
-        double sum = 0;
-        for (const PathNode& node :
-             place_path_nodes(make_gauss_rule(1000), grey(sigma_s, sigma_t, 0), 2 * radius)) {
-            sum += node.weight[0] * sphere_entry(interface_of(row), sigma_t, radius, node.depth,
-                                                 row.number("cos_light"));
-        }
-        return sum;
-    });
-}
-
-TEST(SingleReference, SphereByTheSixteenPointsOfThePaper) {
-    expect_rows("sphere_T1_16", [](const auto& row) {
-        const double radius = row.number("radius"), sigma_s = row.number("sigma_s");
-        const double sigma_t = sigma_s + row.number("sigma_a");
-        double sum = 0;
-        for (const PathNode& node :
-             place_path_nodes(make_midpoint_rule(static_cast<std::uint32_t>(row.number("N"))),
-                              grey(sigma_s, sigma_t, row.number("sigma_m")), 2 * radius)) {
-            sum += node.weight[0] * sphere_entry(interface_of(row), sigma_t, radius, node.depth,
-                                                 row.number("cos_light"));
-        }
-        return sum;
-    });
+TEST(SingleReference, SphereByFineQuadratureAndByTheSixteenPointsOfThePaper) {
+    const PathRule fine = make_gauss_rule(1000);
+    expect_rows("sphere_T1", [&](const auto& row) { return sphere(row, fine, 0); });
+    expect_rows("sphere_T1_16",
+                [](const auto& row) { return sphere(row, midpoints(row), row.number("sigma_m")); });
 }
 
 }  // namespace

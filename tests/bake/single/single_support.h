@@ -31,6 +31,18 @@ inline SingleSetup set_up(Scene scene, std::uint32_t depth_samples = 8) {
     return {std::move(scene), std::move(rays).value(), std::move(points), std::move(medium)};
 }
 
+/// The vertex nearest to a position.
+inline std::size_t vertex_at(const SingleSetup& setup, glm::vec3 position) {
+    std::size_t best = 0;
+    for (std::size_t p = 1; p < setup.points.size(); ++p) {
+        if (glm::distance(setup.points[p].position, position) <
+            glm::distance(setup.points[best].position, position)) {
+            best = p;
+        }
+    }
+    return best;
+}
+
 /// Its points as receivers that see nothing of the outside.
 inline std::vector<bake::ReceiverSet> receivers_of(const SingleSetup& setup) {
     std::vector<bake::ReceiverSet> sets(1);

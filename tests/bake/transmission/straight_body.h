@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/effects/transmission/straight_paths.h"
+#include "bake/effects/transmission/view_fit.h"
 #include "tests/support/media.h"
 
 namespace opaline::tests {
@@ -62,6 +63,18 @@ inline double sum_of(const std::vector<bake::StraightExit>& exits) {
         sum += double{exit.weight[0]};
     }
     return sum;
+}
+
+/// Of what one band shows of an even light from `from`, over the views.
+inline double mean_over(const CrossedBody& crossed, glm::vec3 from,
+                        const bake::TransmissionViews& views) {
+    bake::StraightLight found;
+    bake::follow_straight(crossed.body, {from, 1, {}}, views.seen, found);
+    double mean = 0;
+    for (const bake::StraightExit& exit : found.exits) {
+        mean += views.weight[exit.view] * double{exit.weight[0]};
+    }
+    return mean;
 }
 
 }  // namespace opaline::tests

@@ -84,13 +84,7 @@ TEST(StraightPaths, AnAbsorbingBallShowsOnAverageOverViewsWhatQuadratureSays) {
         truth /= sum;
         const glm::vec3 normal = ball->scene.primitives[0].normal[17];
         const TransmissionViews views = spread_views(normal, eta, 512, {0.5f, 0.3f});
-        StraightLight found;
-        follow_straight(ball->body, {0.9999f * normal, 1, {}}, views.seen, found);
-        double mean = 0;
-        for (const StraightExit& exit : found.exits) {
-            mean += views.weight[exit.view] * double{exit.weight[0]};
-        }
-        EXPECT_NEAR(mean / truth, 1, 0.005) << eta;
+        EXPECT_NEAR(tests::mean_over(*ball, 0.9999f * normal, views) / truth, 1, 0.005) << eta;
     }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <utility>
 
 #include "tests/bake/reference/reference_support.h"
@@ -8,14 +7,6 @@
 #include "tests/support/varied_media.h"
 
 namespace opaline::tests {
-
-inline std::unique_ptr<WalkedBody> make_walked_scene(Scene scene, bool grey = true) {
-    auto walked = std::make_unique<WalkedBody>();
-    walked->scene = std::move(scene);
-    walked->triangles.emplace(bake::EmbreeScene::build(walked->scene, 1).value());
-    walked->space = bake::make_walk_space(walked->scene, *walked->triangles, 0, grey);
-    return walked;
-}
 
 /// A ball of a medium, mapped along x.
 inline Scene make_mapped_ball(const formats::Medium& medium, int levels = 3) {

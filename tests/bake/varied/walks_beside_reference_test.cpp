@@ -26,26 +26,8 @@ TEST(WalksBesideReference, SeeTheSameLightOfAVeinedBallOfVaryingDensity) {
         const auto hit = fixture->scene.surfaces.closest_hit({3.0f * axis}, -axis, 10);
         ASSERT_TRUE(hit);
         bake::WalkStart start{hit->position - 1e-5f * hit->flat, axis, hit->flat, 1, axis};
-        constexpr std::uint32_t kWalks = 12000;
-        glm::dvec3 sum(0), squares(0);
-        std::vector<bake::WalkExit> exits;
-        bake::WalkCounts counts;
-        for (std::uint32_t w = 0; w < kWalks; ++w) {
-            glm::dvec3 own(0);
-            for (bake::WalkGroup group; group.flies_as < walked->space.bands.size();
-                 ++group.flies_as) {
-                bake::WalkRandom random({1, bake::RandomStage::body_walk, group.flies_as, w});
-                exits.clear();
-                bake::follow_walk(walked->space, group, start, {1}, random, exits, counts);
-                for (const bake::WalkExit& exit : exits) {
-                    own += glm::dvec3(exit.weight[0], exit.weight[1], exit.weight[2]);
-                }
-            }
-            sum += own / static_cast<double>(kWalks);
-            squares += own * own / static_cast<double>(kWalks);
-        }
-        bake::EstimateOptions options;
-        options.samples = 4000;
+        const BandsLeaving leaving =
+            walk_bands(walked->space, start, 12000, [](const auto&) { return true; });
         bake::PathOptions terms;
         terms.terms = bake::TermSet::single | bake::TermSet::multiple;
         const bake::PathSpace space = fixture->space(terms);
@@ -55,17 +37,12 @@ TEST(WalksBesideReference, SeeTheSameLightOfAVeinedBallOfVaryingDensity) {
         receiver.inside = start.position;
         receiver.normal = receiver.to_eye = axis;
         receiver.medium = 0;
-        const auto estimate =
-            bake::estimate_pixels(8, options, {}, [&](std::uint32_t, bake::RandomStream& random) {
-                return bake::trace_receiver(space, receiver, random);
-            });
-        bake::Moments seen;
-        for (const bake::Moments& m : estimate->pixel) {
-            seen.merge(m);
-        }
+        const bake::Moments seen = merged(trace_in_parts(32000, [&](bake::RandomStream& random) {
+            return bake::trace_receiver(space, receiver, random);
+        }));
         for (int b = 0; b < 3; ++b) {
-            const double walks = passed * sum[b];
-            const double error = std::sqrt((squares[b] - sum[b] * sum[b]) / kWalks);
+            const auto at = static_cast<std::size_t>(b);
+            const double walks = passed * leaving.mean[at], error = leaving.error[at];
             EXPECT_NEAR(walks, seen.mean[b],
                         4 * std::hypot(error, std::sqrt(seen.variance_of_mean()[b])))
                 << axis.x << ' ' << axis.y << ' ' << axis.z << " band " << b;

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "bake/transport/ray_scene.h"
+#include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::tests {
@@ -39,8 +40,7 @@ formats::Image8 checkers(std::uint32_t side) {
 /// Which of kRays rays from the origin toward the plate are blocked; rays of a packet at a time.
 constexpr std::uint32_t kSide = 256;
 std::vector<bool> blocked_from_below(const Scene& scene, bool nearest) {
-    auto rays = RayScene::build(scene, 1);
-    EXPECT_TRUE(rays);
+    const RayScene rays = build_rays(scene);
     std::vector<bool> blocked;
     for (std::uint32_t i = 0; i < kSide * kSide; i += RayPacket::kSize) {
         RayPacket packet = bake::rays_from({0, 0, 0});
@@ -54,12 +54,12 @@ std::vector<bool> blocked_from_below(const Scene& scene, bool nearest) {
             lanes[k] = -1;
         }
         if (nearest) {
-            const auto hits = rays->closest(lanes, packet);
+            const auto hits = rays.closest(lanes, packet);
             for (std::uint32_t k = 0; k < RayPacket::kSize; ++k) {
                 blocked.push_back(hits.hit[k] != 0);
             }
         } else {
-            rays->occluded(lanes, packet);
+            rays.occluded(lanes, packet);
             for (std::uint32_t k = 0; k < RayPacket::kSize; ++k) {
                 blocked.push_back(packet.tfar[k] < 0);
             }

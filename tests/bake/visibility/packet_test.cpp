@@ -5,33 +5,17 @@
 #include <random>
 
 #include "bake/transport/ray_scene.h"
+#include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
 namespace {
 
-// Distance along the ray to a triangle [Moeller1997], infinite if it is missed or not beyond
-// `near`.
-double distance_to(glm::dvec3 origin, glm::dvec3 d, double near, glm::dvec3 a, glm::dvec3 b,
-                   glm::dvec3 c) {
-    const double miss = std::numeric_limits<double>::infinity();
-    const glm::dvec3 ab = b - a, ac = c - a, from = origin - a, p = glm::cross(d, ac);
-    const double determinant = glm::dot(ab, p);
-    if (determinant == 0) {
-        return miss;
-    }
-    const double u = glm::dot(from, p) / determinant;
-    const glm::dvec3 q = glm::cross(from, ab);
-    const double v = glm::dot(d, q) / determinant, t = glm::dot(ac, q) / determinant;
-    return u >= 0 && v >= 0 && u + v <= 1 && t > near ? t : miss;
-}
-
 // Rays of one direction from points in a small part of a body, some of them from behind the first
 // surface, as for undecided look-ups of a light map.
 TEST(RayPackets, MeetTheNearestTriangleBeyondTheirStart) {
     const auto scene = tests::make_scene({tests::make_sphere(2, 1), tests::make_sphere(2, 0.9f)});
-    const auto rays = RayScene::build(scene, 1);
-    ASSERT_TRUE(rays);
+    const RayScene rays = tests::build_rays(scene);
     std::mt19937 generator(5);
     std::normal_distribution<float> normal;
     const auto random = [&] {
@@ -56,18 +40,11 @@ TEST(RayPackets, MeetTheNearestTriangleBeyondTheirStart) {
             packet.tnear[lane] = lane % 2 == 0 ? 0.0f : 0.2f;
             lanes[lane] = lane < 11 ? -1 : 0;
         }
-        const PacketHits hits = rays->closest(lanes, packet);
+        const PacketHits hits = rays.closest(lanes, packet);
         for (std::uint32_t lane = 0; lane < 11; ++lane) {
             const glm::dvec3 origin(packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]);
-            double nearest = std::numeric_limits<double>::infinity();
-            for (const tests::Primitive& p : scene.primitives) {
-                for (std::size_t i = 0; i < p.index.size(); i += 3) {
-                    nearest = std::min(
-                        nearest,
-                        distance_to(origin, direction, packet.tnear[lane], p.position[p.index[i]],
-                                    p.position[p.index[i + 1]], p.position[p.index[i + 2]]));
-                }
-            }
+            const double nearest =
+                tests::brute_force_distance(scene, origin, direction, packet.tnear[lane]);
             ASSERT_EQ(hits.hit[lane] != 0, std::isfinite(nearest)) << trial << ' ' << lane;
             if (std::isfinite(nearest)) {
                 EXPECT_NEAR(hits.distance[lane], nearest, 1e-4) << trial << ' ' << lane;

@@ -1,15 +1,16 @@
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/irradiance_transport.h"
-#include "formats/opal/cubemap.h"
+#include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
 namespace {
+
+using tests::build_rays;
+using tests::gather_texels;
+using tests::white_irradiance;
 
 struct Placement {
     const char* name;
@@ -22,25 +23,17 @@ const Placement kPlacements[] = {{"at the origin", 1, {0, 0, 0}},
                                  {"far away", 1, {1000, -2000, 500}},
                                  {"tiny and off centre", 1e-3f, {1, 2, -3}}};
 
-std::vector<float> gather(const RayScene& rays, const Receiver& receiver, std::uint32_t n) {
-    std::vector<float> transport(formats::cubemap_texels(n));
-    gather_irradiance(rays, make_direction_set(n), receiver, transport);
-    return transport;
-}
-
 // Nothing blocks a convex body's own hemispheres: each vertex must see exactly what it would see if
 // the body were not there. One false hit makes a texel differ.
 TEST(SelfIntersection, ConvexBodiesNeverShadowThemselves) {
-    const auto nothing = RayScene::build(tests::make_scene({}), 1);
-    ASSERT_TRUE(nothing);
+    const RayScene nothing = build_rays(tests::make_scene({}));
     for (const Placement& place : kPlacements) {
         for (const auto& body : {tests::make_sphere(4), tests::make_cube(5, false)}) {
             const auto scene = tests::make_scene(
                 {tests::transformed(body, tests::some_rotation(), place.scale, place.offset)});
-            const auto rays = RayScene::build(scene, 1);
-            ASSERT_TRUE(rays);
+            const RayScene rays = build_rays(scene);
             for (const Receiver& receiver : make_vertex_receivers(scene)) {
-                ASSERT_EQ(gather(*rays, receiver, 8), gather(*nothing, receiver, 8))
+                ASSERT_EQ(gather_texels(rays, receiver, 8), gather_texels(nothing, receiver, 8))
                     << body.name << ' ' << place.name;
             }
         }
@@ -52,10 +45,9 @@ TEST(SelfIntersection, ClosedRoomsLeakNoLight) {
     for (const Placement& place : kPlacements) {
         const auto scene = tests::make_scene({tests::transformed(
             tests::make_cube(6, true), tests::some_rotation(), place.scale, place.offset)});
-        const auto rays = RayScene::build(scene, 1);
-        ASSERT_TRUE(rays);
+        const RayScene rays = build_rays(scene);
         for (const Receiver& receiver : make_vertex_receivers(scene)) {
-            for (const float value : gather(*rays, receiver, 8)) {
+            for (const float value : gather_texels(rays, receiver, 8)) {
                 ASSERT_EQ(value, 0.0f) << place.name;
             }
         }
@@ -86,23 +78,15 @@ TEST(SelfIntersection, DuplicatedVerticesGatherTheSame) {
 // Smooth normals on a coarse body: the facet's own plane would cut off the terminator.
 TEST(SelfIntersection, SamplesOfACoarseSmoothSphereSeeTheTerminatorOfTheSphere) {
     const auto scene = tests::make_scene({tests::make_sphere(1)});
-    const auto rays = RayScene::build(scene, 1);
-    ASSERT_TRUE(rays);
-    const std::vector<double> solid_angle = formats::texel_solid_angles(16);
-    const auto irradiance = [&](const Receiver& receiver) {
-        const std::vector<float> transport = gather(*rays, receiver, 16);
-        double sum = 0;
-        for (std::size_t j = 0; j < transport.size(); ++j) {
-            sum += transport[j] * solid_angle[j % solid_angle.size()];
-        }
-        return sum / std::numbers::pi;
-    };
+    const RayScene rays = build_rays(scene);
     double lifted = 0, on_facet = 0;
     const auto samples = sample_surface(scene, {0}, 200, 1, {});
     for (const SurfaceSample& sample : samples) {
-        lifted += irradiance(sample.receiver) / 200;
+        lifted += white_irradiance(rays, sample.receiver, 16) / 200;
         on_facet +=
-            irradiance({sample.position + 1e-5f * sample.geometric_normal, sample.normal}) / 200;
+            white_irradiance(
+                rays, {sample.position + 1e-5f * sample.geometric_normal, sample.normal}, 16) /
+            200;
     }
     EXPECT_GT(lifted, 0.999);
     EXPECT_LT(on_facet, 0.998);  // the lift prevents this

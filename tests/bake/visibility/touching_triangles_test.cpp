@@ -2,32 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <utility>
 
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/irradiance_transport.h"
-#include "formats/opal/cubemap.h"
+#include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::bake {
 namespace {
 
+using tests::build_rays;
+using tests::white_irradiance;
+
 std::vector<Receiver> placed(const formats::Scene& scene, const RayScene& rays) {
     return leave_touching_triangles(rays.hierarchy(), scene, make_vertex_receivers(scene), {});
-}
-
-// Of the sky of radiance 1 / pi.
-double irradiance(const RayScene& rays, const Receiver& receiver) {
-    constexpr std::uint32_t kSide = 16;
-    std::vector<float> transport(formats::cubemap_texels(kSide));
-    gather_irradiance(rays, make_direction_set(kSide), receiver, transport);
-    const std::vector<double> solid_angle = formats::texel_solid_angles(kSide);
-    double sum = 0;
-    for (std::size_t j = 0; j < transport.size(); ++j) {
-        sum += static_cast<double>(transport[j]) * solid_angle[j % solid_angle.size()];
-    }
-    return sum / std::numbers::pi;
 }
 
 // A floor of 8 x 8 cells whose edge x = -1 meets a wall of one cell: seven of the floor's vertices
@@ -47,9 +35,8 @@ TEST(TouchingTriangles, AFloorAtACoarseWallSeesHalfOfTheLightAllAlongTheEdge) {
         {tests::some_rotation(), glm::vec3(30, -20, 5)}};
     for (const auto& [turned, offset] : places) {
         const auto scene = floor_at_a_coarse_wall(turned, offset);
-        const auto rays = RayScene::build(scene, 1);
-        ASSERT_TRUE(rays);
-        const auto receivers = placed(scene, *rays);
+        const RayScene rays = build_rays(scene);
+        const auto receivers = placed(scene, rays);
         std::size_t on_edge = 0;
         for (std::size_t v = 0; v < 81; ++v) {
             const glm::vec3 place =
@@ -57,7 +44,7 @@ TEST(TouchingTriangles, AFloorAtACoarseWallSeesHalfOfTheLightAllAlongTheEdge) {
             const bool is_middle = std::abs(place.z) < 0.6f && std::abs(place.x + 1) < 1e-4f;
             if (is_middle) {
                 ++on_edge;
-                EXPECT_NEAR(irradiance(*rays, receivers[v]), 0.5, 0.02) << v;
+                EXPECT_NEAR(white_irradiance(rays, receivers[v], 16), 0.5, 0.02) << v;
             }
         }
         EXPECT_EQ(on_edge, 5u);
@@ -67,10 +54,9 @@ TEST(TouchingTriangles, AFloorAtACoarseWallSeesHalfOfTheLightAllAlongTheEdge) {
 TEST(TouchingTriangles, AWallInTheMiddleOfAFloorStartsItsRaysAboveTheFloor) {
     const auto scene = tests::make_scene({tests::make_quad({-3, 0, -2}, {0, 0, 5}, {7, 0, 0}),
                                           tests::make_quad({0, 0, -1}, {0, 1, 0}, {0, 0, 2}, 4)});
-    const auto rays = RayScene::build(scene, 1);
-    ASSERT_TRUE(rays);
+    const RayScene rays = build_rays(scene);
     const auto before = make_vertex_receivers(scene);
-    const auto after = placed(scene, *rays);
+    const auto after = placed(scene, rays);
     std::size_t moved = 0;
     for (std::size_t v = 4; v < after.size(); ++v) {
         const glm::vec3 position = scene.primitives[1].position[v - 4];
@@ -88,10 +74,9 @@ TEST(TouchingTriangles, AWallInTheMiddleOfAFloorStartsItsRaysAboveTheFloor) {
 }
 
 void expect_unmoved(const formats::Scene& scene) {
-    const auto rays = RayScene::build(scene, 1);
-    ASSERT_TRUE(rays);
+    const RayScene rays = build_rays(scene);
     const auto before = make_vertex_receivers(scene);
-    const auto after = placed(scene, *rays);
+    const auto after = placed(scene, rays);
     ASSERT_EQ(before.size(), after.size());
     for (std::size_t v = 0; v < after.size(); ++v) {
         EXPECT_EQ(before[v].origin, after[v].origin) << v;

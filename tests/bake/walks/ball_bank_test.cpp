@@ -158,17 +158,6 @@ TEST(BallWalk, ConservativeSlabTransmitsByItsTransportThicknessWhateverTheMeanCo
     }
 }
 
-TEST(BallWalk, FurnaceOfAlbedoOneLosesNothing) {
-    for (const float eta : {1.0f, 1.5f}) {
-        const auto ball = make_walked_body(make_sphere(3), make_forward_medium(70, 1, 0.3f, eta));
-        bake::add_balls(ball->space, 1e6, 5, {});
-        const Leaving leaving =
-            walk_from(ball->space, start_below({0, 0.995f, 0}, {0, 1, 0}), 1, 3000);
-        EXPECT_NEAR(leaving.all, 1, 4 * leaving.error + 0.002) << eta;
-        EXPECT_GT(leaving.counts.jumps, 3000u);
-    }
-}
-
 // Bands that fly differently, one that is not scattered in the core, through a coat and a core.
 TEST(BallWalk, BandsThatShareWalksThroughMediaInEachOtherLeaveAsWithoutBalls) {
     formats::Medium coat = make_forward_medium(1, 1, 0.4f, 1.3f),
@@ -189,13 +178,7 @@ TEST(BallWalk, BandsThatShareWalksThroughMediaInEachOtherLeaveAsWithoutBalls) {
     };
     const auto sum_up = [&] {
         Sums sums;
-        std::vector<bake::WalkExit> exits;
-        for (std::uint32_t w = 0; w < kWalks; ++w) {
-            exits.clear();
-            for (bake::WalkGroup group; group.flies_as < 3; ++group.flies_as) {
-                bake::WalkRandom random({1, bake::RandomStage::body_walk, group.flies_as, w});
-                bake::follow_walk(body->space, group, start, {1}, random, exits, sums.counts);
-            }
+        sums.counts = visit_walks(body->space, start, {1}, kWalks, [&](const auto& exits) {
             std::array<double, 3> own{};
             for (const bake::WalkExit& exit : exits) {
                 for (std::size_t b = 0; b < 3; ++b) {
@@ -209,7 +192,7 @@ TEST(BallWalk, BandsThatShareWalksThroughMediaInEachOtherLeaveAsWithoutBalls) {
                 sums.mean[b] += own[b] / kWalks;
                 sums.square[b] += own[b] * own[b] / kWalks;
             }
-        }
+        });
         return sums;
     };
     const Sums plain = sum_up();

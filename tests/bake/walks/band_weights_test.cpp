@@ -18,38 +18,9 @@ formats::Medium make_coloured_medium(glm::vec3 sigma_s, glm::vec3 sigma_a) {
     return medium;
 }
 
-// What leaves through surfaces that face down, band by band: the mean of one walk for each group,
-// and its standard error.
-struct BandsLeaving {
-    std::array<double, 3> mean{}, error{};
-};
-
 BandsLeaving walk_down(const bake::WalkSpace& space, const bake::WalkStart& start,
                        std::uint32_t walks) {
-    BandsLeaving leaving;
-    std::array<double, 3> squares{};
-    std::vector<bake::WalkExit> exits;
-    bake::WalkCounts counts;
-    for (std::uint32_t w = 0; w < walks; ++w) {
-        exits.clear();
-        for (bake::WalkGroup group; group.flies_as < space.bands.size(); ++group.flies_as) {
-            bake::WalkRandom random({1, bake::RandomStage::body_walk, group.flies_as, w});
-            bake::follow_walk(space, group, start, {1}, random, exits, counts);
-        }
-        for (std::size_t b = 0; b < 3; ++b) {
-            double sum = 0;
-            for (const bake::WalkExit& exit : exits) {
-                sum += exit.normal.y < 0 ? static_cast<double>(exit.weight[b]) : 0;
-            }
-            leaving.mean[b] += sum / walks;
-            squares[b] += sum * sum / walks;
-        }
-    }
-    for (std::size_t b = 0; b < 3; ++b) {
-        leaving.error[b] =
-            std::sqrt(std::max(0.0, squares[b] - leaving.mean[b] * leaving.mean[b]) / walks);
-    }
-    return leaving;
+    return walk_bands(space, start, walks, [](const auto& exit) { return exit.normal.y < 0; });
 }
 
 // Thick and thin bodies, extinctions that nearly coincide and that differ by much, a band that does
@@ -67,8 +38,7 @@ TEST(BandWeights, BandsThatShareTheirWalksLeaveAsMuchLightAsEachAloneWithNoMoreN
     const bake::WalkStart start = start_below({0, 1, 0}, up);
     for (const auto& [sigma_s, sigma_a] : media) {
         const auto together =
-            make_walked_body(make_sphere(3), make_coloured_medium(sigma_s, sigma_a));
-        together->space = bake::make_walk_space(together->scene, *together->triangles, 0, false);
+            make_walked_body(make_sphere(3), make_coloured_medium(sigma_s, sigma_a), false);
         const BandsLeaving shared = walk_down(together->space, start, kWalks);
         for (int b = 0; b < 3; ++b) {
             const auto at = static_cast<std::size_t>(b);

@@ -123,51 +123,5 @@ TEST(ExitCells, SeeLightOfDegreeTwoAsItIsTowardsTheExit) {
     }
 }
 
-// Lobes are constant within cells: texels of a vector keep their ratios there, and no light is
-// moved from one cell to another.
-TEST(ExitCells, WeighAVectorCellByCell) {
-    for (const std::uint32_t size : {8u, 32u}) {
-        const std::vector<SurfaceSample> samples{facing({0.2f, 0.8f, -0.1f})};
-        const ExitCells cells(samples, size, make_exit_lobe(1.3));
-        HaarVector light;
-        light.index.resize(formats::cubemap_texels(size));
-        std::iota(light.index.begin(), light.index.end(), 0u);
-        std::vector<float> texel;
-        for (const std::uint32_t k : light.index) {
-            texel.push_back(1 + static_cast<float>(k * 7 % 11));
-        }
-        light.value = texel;
-        formats::haar_forward_cube(std::span(light.value), size);
-        std::vector<float> row(4 * texel.size());
-        ExitCells::Sums sums{};
-        ExitCells::Cells own{};
-        cells.add_exit(0, one({0.9f, 0.3f, 0}), glm::vec4(1), sums);
-        const SparseVector vector{light.index, light.value};
-        cells.add(0, vector, cells.averages_of(vector), sums, {row, 4}, own);
-        cells.add_cells(own, {row, 4});
-        std::vector<float> shown(texel.size()), scratch(std::size_t{size} * size);
-        for (std::size_t k = 0; k < shown.size(); ++k) {
-            shown[k] = row[4 * k + 1];
-        }
-        for (std::uint32_t face = 0; face < formats::kCubeFaces; ++face) {
-            formats::haar_inverse(std::span(shown).subspan(face * scratch.size(), scratch.size()),
-                                  size, scratch);
-        }
-        std::vector<float> weight(ExitCells::kCount, HUGE_VALF);
-        float least = HUGE_VALF, most = -HUGE_VALF;
-        for (std::uint32_t k = 0; k < shown.size(); ++k) {
-            const std::uint32_t face = k / (size * size), at = k % (size * size);
-            const formats::Vec3 w = formats::texel_direction(size, face, at / size, at % size);
-            float& of_cell = weight[formats::texel_index(ExitCells::kSide, w)];
-            of_cell = of_cell == HUGE_VALF ? shown[k] / texel[k] : of_cell;
-            ASSERT_NEAR(shown[k], of_cell * texel[k], 2e-3f) << size << " " << k;
-            least = std::min(least, of_cell);
-            most = std::max(most, of_cell);
-        }
-        EXPECT_LT(least, 0.5f);
-        EXPECT_GT(most, 2);
-    }
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -115,15 +115,12 @@ TEST(ExitLobe, OfLightScatteredOftenRemembersTheWayOfTheWalk) {
         const auto slab = tests::make_walked_body(tests::make_wide_slab(40),
                                                   tests::make_forward_medium(1, 0.98f, 0, eta));
         double directions = 0, ways = 0, true_squares = 0, squares = 0;
-        std::vector<WalkExit> exits;
-        WalkCounts counts;
-        for (std::uint32_t w = 0; w < kWalks; ++w) {
-            WalkRandom random({1, RandomStage::body_walk, 7, w});
-            exits.clear();
-            follow_walk(slab->space, {}, tests::start_below({0, 0, 0}, up), {2}, random, exits,
-                        counts);
-            for (const WalkExit& exit : exits) {
-                if (exit.turned >= 1 && exit.normal.y > 0.5f) {
+        tests::visit_walks(
+            slab->space, tests::start_below({0, 0, 0}, up), {2}, kWalks, [&](const auto& exits) {
+                for (const WalkExit& exit : exits) {
+                    if (!(exit.turned >= 1 && exit.normal.y > 0.5f)) {
+                        continue;
+                    }
                     const glm::vec3 along(exit.drift.x, 0, exit.drift.z);
                     const glm::vec3 way = exit.weight[0] * along;
                     const ExitDirection known = lobe.direction(up, exit);
@@ -134,8 +131,7 @@ TEST(ExitLobe, OfLightScatteredOftenRemembersTheWayOfTheWalk) {
                                                                                    exit.direction));
                     squares += weight * square_along(along, known.square);
                 }
-            }
-        }
+            });
         EXPECT_NEAR(ways / directions, 1, 0.15) << eta;
         EXPECT_NEAR(squares / true_squares, 1, 0.45) << eta;
     }

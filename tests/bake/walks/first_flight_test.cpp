@@ -65,15 +65,12 @@ TEST(FirstFlight, DepthsAreThoseOfAnExponential) {
 TEST(FirstFlight, EachGroupOfBandsHasItsOwnExtinction) {
     formats::Medium medium = make_grey_medium(0.9f, 0.1f, 1);
     medium.sigma_s = {0.9f, 1.9f, 3.9f};
-    WalkedBody slab;
-    slab.scene = make_translucent_scene({make_wide_slab(1)}, medium);
-    slab.triangles.emplace(bake::EmbreeScene::build(slab.scene, 1).value());
-    slab.space = bake::make_walk_space(slab.scene, *slab.triangles, 0, false);
-    ASSERT_EQ(slab.space.bands.size(), 3u);
-    const Straight seen = look_down(slab.space);
+    const auto slab = make_walked_body(make_wide_slab(1), medium, false);
+    ASSERT_EQ(slab->space.bands.size(), 3u);
+    const Straight seen = look_down(slab->space);
     for (std::size_t g = 0; g < 3; ++g) {
         EXPECT_NEAR(seen.scattered[g],
-                    -std::expm1(-static_cast<double>(slab.space.media[0].sigma_t[g])), 1e-4);
+                    -std::expm1(-static_cast<double>(slab->space.media[0].sigma_t[g])), 1e-4);
     }
 }
 
@@ -100,24 +97,20 @@ TEST(FirstFlight, ViewsFromASharpEdgeSeeAsMuchAsOthers) {
 
 // A body that stands in its floor is lit by what scatters above it.
 TEST(FirstFlight, WhatStandsInABodyTakesOnlyTheLightThatReachesIt) {
-    WalkedBody slab;
     Primitive floor = make_wide_slab(5);
     for (glm::vec3& p : floor.position) {
         p.y -= 2;  // from y = -2 down
     }
     floor.material = 1;
-    slab.scene = make_translucent_scene({make_wide_slab(5), std::move(floor)},
-                                        make_forward_medium(1, 0.9f, 0, 1.4f));
-    slab.triangles.emplace(bake::EmbreeScene::build(slab.scene, 1).value());
-    slab.space = bake::make_walk_space(slab.scene, *slab.triangles, 0, true);
-    EXPECT_NEAR(look_down(slab.space).scattered[0], -std::expm1(-2.0), 1e-3);
+    const auto slab = make_walked_scene(make_translucent_scene(
+        {make_wide_slab(5), std::move(floor)}, make_forward_medium(1, 0.9f, 0, 1.4f)));
+    EXPECT_NEAR(look_down(slab->space).scattered[0], -std::expm1(-2.0), 1e-3);
 }
 
 // A floor far below an open body is none that stands in it: through the hole light is lost as
 // without.
 TEST(FirstFlight, WhatLiesFarBeyondAHoleTakesNoMoreThanNothing) {
     const auto seen_above = [](bool has_floor) {
-        WalkedBody open;
         Primitive body = make_wide_slab(1);
         const std::vector<std::uint32_t> all = std::exchange(body.index, {});
         for (std::size_t i = 0; i < all.size(); i += 3) {
@@ -133,10 +126,10 @@ TEST(FirstFlight, WhatLiesFarBeyondAHoleTakesNoMoreThanNothing) {
                 p.y -= 300;
             }
         }
-        open.scene = make_translucent_scene(std::move(parts), make_forward_medium(1, 0.9f, 0, 1));
-        open.triangles.emplace(bake::EmbreeScene::build(open.scene, 1).value());
-        open.space = bake::make_walk_space(open.scene, *open.triangles, 0, true);
-        return look_down(open.space);
+        return look_down(
+            make_walked_scene(
+                make_translucent_scene(std::move(parts), make_forward_medium(1, 0.9f, 0, 1)))
+                ->space);
     };
     const Straight without = seen_above(false), with = seen_above(true);
     EXPECT_NEAR(with.scattered[0], without.scattered[0], 1e-5);

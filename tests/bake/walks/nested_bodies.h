@@ -31,15 +31,11 @@ inline Scene make_nested_scene(std::vector<Part> parts) {
 
 /// The first part, for walks that pass through all others.
 inline std::unique_ptr<WalkedBody> make_nested_body(std::vector<Part> parts, bool grey = true) {
-    auto body = std::make_unique<WalkedBody>();
-    body->scene = make_nested_scene(std::move(parts));
-    body->triangles.emplace(bake::EmbreeScene::build(body->scene, 1).value());
     std::vector<std::uint32_t> inner;
-    for (std::uint32_t m = 1; m < body->scene.materials.size(); ++m) {
+    for (std::uint32_t m = 1; m < parts.size(); ++m) {
         inner.push_back(m);
     }
-    body->space = bake::make_walk_space(body->scene, *body->triangles, 0, grey, inner);
-    return body;
+    return make_walked_scene(make_nested_scene(std::move(parts)), grey, inner);
 }
 
 /// Where a line from outside first meets the body.

@@ -143,44 +143,21 @@ Compared compare_with_reference(std::vector<Part> parts, std::uint32_t walks,
     const auto eta = static_cast<double>(body->space.eta);
     const double enters = bake::fresnel_transmittance(1, eta);
     Compared result;
-    std::array<double, 3> squares{};
-    std::vector<bake::WalkExit> exits;
-    bake::WalkCounts counts;
-    for (std::uint32_t w = 0; w < walks; ++w) {
-        exits.clear();
-        for (bake::WalkGroup group; group.flies_as < body->space.bands.size(); ++group.flies_as) {
-            bake::WalkRandom random({1, bake::RandomStage::body_walk, group.flies_as, w});
-            bake::follow_walk(body->space, group, start, {1}, random, exits, counts);
-        }
-        for (std::size_t b = 0; b < 3; ++b) {
-            double sum = 0;
-            for (const bake::WalkExit& exit : exits) {
-                sum += exit.direction.y > 0
-                           ? enters * static_cast<double>(exit.weight[grey ? 0 : b])
-                           : 0;
-            }
-            result.walked[b] += sum / walks;
-            squares[b] += sum * sum / walks;
-        }
-    }
-    EXPECT_EQ(counts.lost + counts.endless + counts.buried, 0u);
+    const BandsLeaving leaving = walk_bands(body->space, start, walks,
+                                            [](const auto& exit) { return exit.direction.y > 0; });
+    EXPECT_EQ(leaving.counts.lost + leaving.counts.endless + leaving.counts.buried, 0u);
     const auto truth = make_fixture(make_nested_scene(std::move(parts)), make_half_sky(true));
     bake::PathOptions scattered;
     scattered.terms = formats::TermSet::single | formats::TermSet::multiple;
-    bake::Moments moments;
-    for (std::uint32_t i = 0; i < samples; ++i) {
-        bake::RandomStream random(3, 0, i);
-        moments.add(bake::trace_ray(truth->space(scattered), start.position + start.normal,
-                                    -start.normal, random)
-                        .radiance);
-    }
+    const bake::Moments moments =
+        look(truth->space(scattered), start.position + start.normal, -start.normal, samples);
     const glm::dvec3 error = glm::sqrt(moments.variance_of_mean());
     for (int b = 0; b < 3; ++b) {
         const auto at = static_cast<std::size_t>(b);
         result.truth[at] = moments.mean[b];
         result.truth_error[at] = error[b];
-        result.walked_error[at] =
-            std::sqrt(std::max(0.0, squares[at] - result.walked[at] * result.walked[at]) / walks);
+        result.walked[at] = enters * leaving.mean[grey ? 0 : at];
+        result.walked_error[at] = enters * leaving.error[grey ? 0 : at];
     }
     return result;
 }
@@ -253,21 +230,17 @@ TEST(NestedWalk, TouchingOverlappingOpenAndTurnedBodiesEndAllWalksWithFiniteWeig
     const auto counts_of = [](std::vector<Part> parts, const char* what) {
         const auto body = make_nested_body(std::move(parts));
         bake::WalkCounts counts;
-        std::vector<bake::WalkExit> exits;
         for (const glm::vec3 along : {glm::vec3(0, -1, 0), {0.8f, 0, 0.6f}, {-0.6f, 0.8f, 0}}) {
             const bake::WalkStart start =
                 start_at(body->space, -3.0f * along + glm::vec3(0.01f, 0.02f, 0.03f), along);
-            for (std::uint32_t w = 0; w < 1500; ++w) {
-                bake::WalkRandom random({1, bake::RandomStage::body_walk, 7, w});
-                exits.clear();
-                bake::follow_walk(body->space, {}, start, {1}, random, exits, counts);
+            counts += visit_walks(body->space, start, {1}, 1500, [&](const auto& exits) {
                 float sum = 0;
                 for (const bake::WalkExit& exit : exits) {
                     sum += exit.weight[0];
                     EXPECT_NEAR(glm::length(exit.direction), 1, 1e-3f) << what;
                 }
                 EXPECT_TRUE(sum >= 0 && sum < 6) << what << " " << sum;
-            }
+            });
         }
         EXPECT_LE(counts.unfinished, static_cast<double>(counts.walks) + 1) << what;
         return counts;

@@ -100,18 +100,6 @@ TEST(ViewFit, HoldsLightThatIsQuadraticInTheViewExactlyWithNineRowsAndNotWithFou
     }
 }
 
-TEST(ViewFit, RowsOfDegreeTwoAreZeroWhereLightIsLinearInTheView) {
-    for (const double eta : {0.8, 1.0, 1.3, 1.8}) {
-        const FittedLight light =
-            fit_light(eta, true, [](glm::vec3 w) { return 2 + w.x - 3 * w.y + 0.5f * w.z; });
-        EXPECT_NEAR(static_cast<double>(light.rows[0]), 1, 1e-3) << eta;
-        EXPECT_NEAR(static_cast<double>(light.rows[1]), -3, 1e-3) << eta;
-        for (std::size_t r = kFirstDegree; r < kAllDegrees; ++r) {
-            EXPECT_NEAR(static_cast<double>(light.rows[r]), 0, 1e-2) << eta << " " << r;
-        }
-    }
-}
-
 // Whatever the rows, as where those of other normals are mixed: outgoing flux stays exact.
 TEST(ViewFit, MeanOverTheViewsIsThatOfTheFirstRowWhateverTheOthersAre) {
     for (const double eta : {0.8, 1.0, 1.3, 1.8}) {

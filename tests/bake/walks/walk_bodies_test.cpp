@@ -51,17 +51,7 @@ TEST(Walk, BlackMediumReturnsNothing) {
 
 // Half of the ball's top is missing: what leaves through the hole is counted and made up for.
 TEST(Walk, LightLostThroughAHoleIsCountedAndReplacedByTheMeanOfTheRest) {
-    Primitive open = make_sphere(3);
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i + 2 < open.index.size(); i += 3) {
-        if (open.position[open.index[i]].y > -0.9f) {
-            kept.insert(kept.end(), open.index.begin() + static_cast<std::ptrdiff_t>(i),
-                        open.index.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-        }
-    }
-    ASSERT_LT(kept.size(), open.index.size());
-    open.index = kept;
-    const auto body = make_walked_body(open, make_forward_medium(2, 1, 0, 1.3f));
+    const auto body = make_walked_body(make_open_ball(), make_forward_medium(2, 1, 0, 1.3f));
     const Leaving leaving =
         walk_from(body->space, start_below({0, 0.995f, 0}, {0, 1, 0}), 1, 20000);
     EXPECT_GT(leaving.counts.lost, 100u);
@@ -75,38 +65,24 @@ TEST(Walk, LightLostThroughAHoleIsCountedAndReplacedByTheMeanOfTheRest) {
 // Upward from the ball at the origin a line enters the ball above through a hole and leaves it: two
 // shells by that line, and walks that begin so would leave the body unseen.
 TEST(Walk, LineThroughAHoleOfAnotherPartIsOutvotedByOthers) {
-    Primitive above = make_sphere(3);
-    std::vector<std::uint32_t> kept;
-    for (std::size_t i = 0; i + 2 < above.index.size(); i += 3) {
-        if (above.position[above.index[i]].y > -0.9f) {
-            kept.insert(kept.end(), above.index.begin() + static_cast<std::ptrdiff_t>(i),
-                        above.index.begin() + static_cast<std::ptrdiff_t>(i) + 3);
-        }
-    }
-    above.index = kept;
+    Primitive above = make_open_ball();
     for (glm::vec3& p : above.position) {
         p.y += 3;
     }
-    WalkedBody body;
-    body.scene = make_translucent_scene({make_sphere(3), above}, make_grey_medium(10, 0));
-    body.triangles.emplace(bake::EmbreeScene::build(body.scene, 1).value());
-    body.space = bake::make_walk_space(body.scene, *body.triangles, 0, true);
+    const auto body =
+        make_walked_scene(make_translucent_scene({make_sphere(3), above}, make_grey_medium(10, 0)));
     bake::WalkHit hit;
-    ASSERT_TRUE(find_hit(body.space, {0, 1.01f, 0}, {0, 1, 0}, 10, hit));
+    ASSERT_TRUE(find_hit(body->space, {0, 1.01f, 0}, {0, 1, 0}, 10, hit));
     ASSERT_GT(hit.position.y, 3.5f) << "there is no hole";
-    EXPECT_EQ(bake::count_shells(body.space, {0, 0.9f, 0}, {0, 1, 0}), 1);
-    EXPECT_EQ(bake::count_shells(body.space, {0, 3, 0}, {0, 1, 0}), 1);
+    EXPECT_EQ(bake::count_shells(body->space, {0, 0.9f, 0}, {0, 1, 0}), 1);
+    EXPECT_EQ(bake::count_shells(body->space, {0, 3, 0}, {0, 1, 0}), 1);
 }
 
 // A walk goes through a shell of its own medium inside the body; another material ends it.
 TEST(Walk, InnerShellsOfTheSameMediumAreNoBoundaryAndOthersAre) {
     const formats::Medium medium = make_forward_medium(10, 1, 0, 1.3f);
     const auto walked = [&](std::vector<Primitive> parts) {
-        auto body = std::make_unique<WalkedBody>();
-        body->scene = make_translucent_scene(std::move(parts), medium);
-        body->triangles.emplace(bake::EmbreeScene::build(body->scene, 1).value());
-        body->space = bake::make_walk_space(body->scene, *body->triangles, 0, true);
-        return body;
+        return make_walked_scene(make_translucent_scene(std::move(parts), medium));
     };
     const bake::WalkStart start = start_below({0, 0.995f, 0}, {0, 1, 0});
     const auto shells = walked({make_sphere(3), make_sphere(3, 0.7f)});
