@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # A row of the table of whole bakes in tests/bench/RESULTS.md: seconds of each stage, size, relights a second.
 # Settings of [Wang2005], Table 1: 6 x 32 x 32 directions, 128 coefficients.
-# usage: table.sh OPALINE RELIGHT_BENCH FILE.gltf MEDIA.json SAMPLES
+# usage: table.sh OPALINE OPALINE_BENCH FILE.gltf MEDIA.json SAMPLES
 set -euo pipefail
-[ $# -eq 5 ] || { echo "usage: table.sh OPALINE RELIGHT_BENCH FILE.gltf MEDIA.json SAMPLES" >&2; exit 2; }
+[ $# -eq 5 ] || { echo "usage: table.sh OPALINE OPALINE_BENCH FILE.gltf MEDIA.json SAMPLES" >&2; exit 2; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 "$1" bake "$3" --media "$4" --samples "$5" --cubemap 32 --coefficients 128 --epsilon 2e-3 \
     -o "$work/baked.opal" --report "$work/report.json" 2>/dev/null
-OPALINE_BENCH_ASSET="$work/baked.opal" "$2" --benchmark_out="$work/bench.json" \
+OPALINE_BENCH_ASSET="$work/baked.opal" "$2" speed --benchmark_filter=^on_ --benchmark_out="$work/bench.json" \
     --benchmark_out_format=json >/dev/null 2>&1
 python3 - "$work" "$3" "$5" <<'PY'
 import json, os, sys

@@ -65,12 +65,6 @@ double characteristic_radius(const DropletDistribution& droplets) {
     return droplets.effective_radius / (droplets.gamma + 2);
 }
 
-double mean_radius_power(const DropletDistribution& droplets, double power) {
-    assert(power > -droplets.gamma);
-    return std::exp(power * std::log(characteristic_radius(droplets)) +
-                    std::lgamma(droplets.gamma + power) - std::lgamma(droplets.gamma));
-}
-
 double mean_geometric_section(const DropletDistribution& droplets) {
     const double r_n = characteristic_radius(droplets);
     return std::numbers::pi * droplets.gamma * (droplets.gamma + 1) * r_n * r_n;

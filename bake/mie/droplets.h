@@ -23,10 +23,6 @@ formats::Status check_droplets(const DropletDistribution& droplets);
 /// r_n [m].
 double characteristic_radius(const DropletDistribution& droplets);
 
-/// <r^power> [m^power], the mean over droplets: r_n^q Gamma(gamma + q) / Gamma(gamma), by
-/// logarithms, so that no gamma overflows. `power` > -gamma.
-double mean_radius_power(const DropletDistribution& droplets, double power);
-
 /// pi <r^2> [m^2].
 double mean_geometric_section(const DropletDistribution& droplets);
 

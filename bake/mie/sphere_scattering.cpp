@@ -135,22 +135,6 @@ MieEfficiencies sphere_efficiencies(double x, std::complex<double> m) {
     return sphere_efficiencies(x, m, series);
 }
 
-MieAmplitudes sum_amplitudes(const MieSeries& series, double cosine) {
-    MieAmplitudes sum;
-    double before = 0, now = 1;  // pi_{n-1}, pi_n
-    for (std::size_t i = 0; i < series.a.size(); ++i) {
-        const auto n = static_cast<double>(i + 1);
-        const double tau = n * cosine * now - (n + 1) * before;
-        const double scale = (2 * n + 1) / (n * (n + 1));
-        sum.s1 += scale * (series.a[i] * now + series.b[i] * tau);
-        sum.s2 += scale * (series.a[i] * tau + series.b[i] * now);
-        const double next = ((2 * n + 1) * cosine * now - (n + 1) * before) / n;
-        before = now;
-        now = next;
-    }
-    return sum;
-}
-
 double AngleGrid::angle(std::size_t i) const {
     return i < half.size() ? half[i] : pi - half[size() - 1 - i];
 }

@@ -24,16 +24,6 @@ MieEfficiencies sum_efficiencies(double x, const MieSeries& series);
 MieEfficiencies sphere_efficiencies(double x, std::complex<double> m, MieSeries& series);
 MieEfficiencies sphere_efficiencies(double x, std::complex<double> m);
 
-/// Amplitudes of light scattered by the angle theta, perpendicular (S_1) and parallel (S_2) to the
-/// plane of scattering. |S_1|^2 + |S_2|^2 over 2 k^2 C_sca is the phase function that integrates to
-/// 1 over the sphere.
-struct MieAmplitudes {
-    std::complex<double> s1, s2;
-};
-
-/// At one angle, straight from the definition. `cosine` in [-1, 1].
-MieAmplitudes sum_amplitudes(const MieSeries& series, double cosine);
-
 /// Angles from 0 to pi that lie symmetrically around pi / 2, which is one of them, so that both
 /// halves share the angular functions.
 struct AngleGrid {

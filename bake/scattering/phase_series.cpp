@@ -154,16 +154,4 @@ unsigned choose_phase_terms(const PhaseSeries& series, double tolerance) {
     return kMostDegrees * kMostDegrees;
 }
 
-std::vector<double> harmonic_weights(const PhaseSeries& series, unsigned terms) {
-    assert(terms > 0 && terms <= series.lambda.size() * series.lambda.size());
-    std::vector<double> weight;
-    for (std::size_t l = 0; weight.size() < terms; ++l) {
-        const double signed_lambda = l % 2 == 0 ? series.lambda[l] : -series.lambda[l];
-        for (std::size_t order = 0; order < 2 * l + 1 && weight.size() < terms; ++order) {
-            weight.push_back(signed_lambda);
-        }
-    }
-    return weight;
-}
-
 }  // namespace opaline::bake

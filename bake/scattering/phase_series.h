@@ -35,10 +35,4 @@ double phase_rms(const PhaseSeries& series, unsigned terms);
 /// Precondition: 5 degrees or more.
 unsigned choose_phase_terms(const PhaseSeries& series, double tolerance);
 
-/// p(w_i, w_o) ~ sum_k weight[k] Y_k(w_i) Y_k(w_o) for k < terms, with the real harmonics of
-/// formats/opal/spherical_harmonics.h and both directions pointing AWAY from the point, so that
-/// light that goes straight on has w_o = -w_i: weight = (-1)^l lambda_l. The sum may be negative.
-/// Precondition: `terms` in [1, degrees^2].
-std::vector<double> harmonic_weights(const PhaseSeries& series, unsigned terms);
-
 }  // namespace opaline::bake

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 namespace opaline::bake {
 namespace {
@@ -41,21 +40,6 @@ double eval_zonal(std::span<const double> moment, double cosine) {
         legendre = next;
     }
     return sum / (4 * std::numbers::pi);
-}
-
-double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, double ell,
-                       double cosine) {
-    if (!(ell > 0)) {
-        return eval_phase(density, cosine);
-    }
-    // Of those scattered at all, the share that is scattered once: its series converges slowest.
-    const double once = ell * std::exp(-ell) / -std::expm1(-ell);
-    std::vector<double> rest;
-    rest.reserve(series.lambda.size());
-    for (const double lambda : series.lambda) {
-        rest.push_back(moment_after_many(lambda, ell) - once * lambda);
-    }
-    return once * eval_phase(density, cosine) + eval_zonal(rest, cosine);
 }
 
 }  // namespace opaline::bake

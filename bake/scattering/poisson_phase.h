@@ -2,9 +2,6 @@
 
 #include <span>
 
-#include "bake/scattering/phase.h"
-#include "bake/scattering/phase_series.h"
-
 namespace opaline::bake {
 
 /// Light along a path in a medium of constant albedo and phase function is scattered a Poisson
@@ -26,12 +23,6 @@ double moment_of_ray(double lambda, double ell);
 
 /// lambda^2 e^(-ell (1 - lambda)): a scattering at both ends, any number between.
 double moment_of_source(double lambda, double ell);
-
-/// Density [1/sr] over directions of light that was scattered at least once, >= 0 but for rounding.
-/// The first order is that of `density`, exactly; `series` of the same phase function needs as many
-/// degrees as its square has: ln(1e-12) / (2 ln g) for Henyey-Greenstein. `cosine` in [-1, 1].
-double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, double ell,
-                       double cosine);
 
 /// Sum over degrees of (2 l + 1) / (4 pi) moment[l] P_l(cosine) [1/sr].
 double eval_zonal(std::span<const double> moment, double cosine);

@@ -5,10 +5,8 @@ namespace opaline::tests {
 /// The tables and figures of opaline_bench, each run with the arguments after its name. Exit code.
 int brute_force_table(int count, char** arguments);
 int error_matrix(int count, char** arguments);
-int guided_walk_table(int count, char** arguments);
 int interreflection_table(int count, char** arguments);
 int model_table(int count, char** arguments);
-int particle_table(int count, char** arguments);
 int radiosity_figure(int count, char** arguments);
 int radiosity_table(int count, char** arguments);
 int slab_accuracy(int count, char** arguments);

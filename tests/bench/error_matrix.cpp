@@ -3,11 +3,8 @@
 // absorption in percent of the diagonal, albedo, mean cosine, index 1.4. Prints what the check
 // states and what four times as many other vertices say, without those that the check leaves out;
 // then what it states of suns. Rows of RESULTS.md's tables:
-// opaline_bench error-matrix SCENE LENGTH,ALBEDO,G...; a minute a cell. With `above` before the scene the
-// other vertices are left out where what is stated is at most 3 %, 5 % from a mean cosine of .9 on.
+// opaline_bench error-matrix SCENE LENGTH,ALBEDO,G...; a minute a cell.
 #include <cstdio>
-#include <span>
-#include <string_view>
 #include <vector>
 
 #include "bake/accuracy/check_model.h"
@@ -21,14 +18,6 @@
 
 namespace opaline::bake {
 namespace {
-
-BakeResult bake(const formats::Scene& scene, bool check) {
-    BakeOptions options;
-    options.effects = {"multiple", "single"};
-    options.quality = Quality::production;
-    options.check_model = check;
-    return run_bake(scene, resolve_knobs(options).value(), {}).value();
-}
 
 ModelErrorReport at_other_vertices(const formats::Scene& scene, const formats::AssetView& asset) {
     ModelCheckOptions options;
@@ -48,11 +37,6 @@ ModelErrorReport at_other_vertices(const formats::Scene& scene, const formats::A
     return compare_with_truth(luminance, truth, probes, options.seed);
 }
 
-bool is_on_target(const formats::Scene& scene, const ModelErrorReport& stated) {
-    const float g = scene.materials.front().medium->phase.g;
-    return stated.rms_relative <= (g >= 0.9f ? 0.05 : 0.03);
-}
-
 void print_other_vertices(const ModelErrorReport& stated, const ModelErrorReport& other) {
     const bool holds = stated.ci95[0] <= other.ci95[1] && other.ci95[0] <= stated.ci95[1];
     std::printf(" %.1f (%.1f to %.1f), mean %+.1f%s;", 100 * other.rms_relative,
@@ -62,14 +46,16 @@ void print_other_vertices(const ModelErrorReport& stated, const ModelErrorReport
                         : ", OUTSIDE");
 }
 
-void print_cell(const formats::Scene& scene, bool above_target_alone) {
-    const BakeResult baked = bake(scene, true);
+void print_cell(const formats::Scene& scene) {
+    BakeOptions options;
+    options.effects = {"multiple", "single"};
+    options.quality = Quality::production;
+    options.check_model = true;
+    const BakeResult baked = run_bake(scene, resolve_knobs(options).value(), {}).value();
     const ModelErrorReport& stated = *baked.model_error;
     std::printf(" %.1f (%.1f to %.1f), mean %+.1f;", 100 * stated.rms_relative,
                 100 * stated.ci95[0], 100 * stated.ci95[1], 100 * stated.bias);
-    if (!(above_target_alone && is_on_target(scene, stated))) {
-        print_other_vertices(stated, at_other_vertices(scene, baked.asset.view()));
-    }
+    print_other_vertices(stated, at_other_vertices(scene, baked.asset.view()));
     const ModelErrorReport::Suns& suns = *stated.suns;
     std::printf(" suns %.1f (%.1f to %.1f), mean %+.1f, noise %.0f; %.0f s, check %.0f s |\n",
                 100 * suns.rms_relative, 100 * suns.ci95[0], 100 * suns.ci95[1], 100 * suns.bias,
@@ -80,12 +66,5 @@ void print_cell(const formats::Scene& scene, bool above_target_alone) {
 }  // namespace opaline::bake
 
 int opaline::tests::error_matrix(int count, char** argument) {
-    std::span<char*> cells = std::span(argument, static_cast<std::size_t>(count)).subspan(1);
-    const bool above_target_alone = !cells.empty() && std::string_view(cells[0]) == "above";
-    cells = cells.subspan(above_target_alone ? 1 : 0);
-    return opaline::bake::print_grey_cells("opaline_bench error-matrix", cells,
-                                           [&](const opaline::formats::Scene& scene) {
-                                               opaline::bake::print_cell(scene, above_target_alone);
-                                           });
-    return 0;
+    return opaline::bake::print_grey_cells(count, argument, opaline::bake::print_cell);
 }

@@ -1,5 +1,5 @@
-// Relights receivers in compute shaders, as Opaline::gl does, and streams as many bytes as that
-// reads: milliseconds of the GPU's own clock, and their ratio. Needs EGL alone, no asset:
+// Relights receivers in compute shaders, as Opaline::gl does, the light's upload included:
+// milliseconds of the GPU's own clock. Needs EGL alone, no asset:
 //     gl_relight_bench [RECEIVERS [COEFFICIENTS [CUBEMAP]]]
 // Indices are random, which is hard on caches: those of baked rows favour coarse coefficients.
 #include <EGL/egl.h>
@@ -129,7 +129,6 @@ struct Queries {
 // compute shaders.
 struct Times {
     double gpu = 0, wall = 0;
-    double best() const { return gpu > 0.002 ? gpu : wall; }
 };
 
 template <class Work>
@@ -157,19 +156,6 @@ Times measure(const Queries& q, const Work& work) {
     return {gpu[gpu.size() / 2], wall[wall.size() / 2]};
 }
 
-constexpr char kStreamText[] = R"(
-layout(local_size_x = 256) in;
-layout(std430, binding = 0) readonly buffer Bytes { uvec4 bytes[]; };
-layout(std430, binding = 2) writeonly buffer Results { vec4 result[]; };
-layout(location = 0) uniform uint count;
-void main() {
-    uvec4 sum = uvec4(0u);
-    uint stride = gl_NumWorkGroups.x * 256u;
-    for (uint i = gl_GlobalInvocationID.x; i < count; i += stride) sum += bytes[i];
-    result[gl_GlobalInvocationID.x] = vec4(sum);
-}
-)";
-
 int run(std::uint32_t receivers, std::uint32_t coefficients, std::uint32_t n) {
     GlFunctions gl;
     if (!make_context() || runtime::load_gl_functions(load, gl) != OPALINE_OK) {
@@ -190,49 +176,20 @@ int run(std::uint32_t receivers, std::uint32_t coefficients, std::uint32_t n) {
     light.rgba.assign(std::size_t{24} * n * n, 0.5f);
     for (const std::uint32_t bands : {1u, 3u}) {
         const formats::Asset asset = make_rows(receivers, coefficients, n, bands);
-        Times stream;
-        for (const std::uint32_t lanes : {0u, 4u, 8u, 16u, 32u}) {
-            runtime::GlNames names(gl);
-            runtime::Relight relight(gl);
-            const runtime::SavedState saved(gl);
-            if (relight.upload(asset.view(), {lanes, 0}, names) != OPALINE_OK) {
-                std::fprintf(stderr, "%s\n", opaline_last_error());
-                return 1;
-            }
-            if (lanes == 0) {
-                const std::size_t bytes =
-                    asset.transport.index16.size() * 2 + asset.transport.index32.size() * 4 +
-                    asset.transport.code8.size() + std::size_t{receivers} * (4 + bands * 20);
-                const GLuint data = names.make_buffer(bytes, GL_STATIC_DRAW);
-                runtime::clear_buffer(gl, data, bytes);
-                const GLuint groups = 512;
-                const GLuint sums =
-                    names.make_buffer(std::size_t{groups} * 256 * 16, GL_DYNAMIC_COPY);
-                const GLuint program = names.make_program("streaming", "", kStreamText);
-                if (program == 0) return 1;
-                gl.ProgramUniform1ui(program, 0, static_cast<GLuint>(bytes / 16));
-                stream = measure(queries, [&] {
-                    gl.UseProgram(program);
-                    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, data);
-                    gl.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, sums);
-                    gl.DispatchCompute(groups, 1, 1);
-                });
-                std::printf("%u band%s, %.1f MB: streaming %.4f ms (wall %.4f ms), %.0f GB/s\n",
-                            bands, bands == 1 ? "" : "s", 1e-6 * static_cast<double>(bytes),
-                            stream.gpu, stream.wall,
-                            1e-6 * static_cast<double>(bytes) / stream.best());
-            }
-            const Times relit = measure(queries, [&] {
-                relight.light(light, names);
-                relight.dot(runtime::dark_emitters());
-            });
-            std::printf(
-                "  lanes %2u%s: relight %.4f ms (with the light's upload; wall %.4f ms), "
-                "%.2f x streaming\n",
-                lanes, lanes == 0 ? " (chosen)" : "", relit.gpu, relit.wall,
-                relit.best() / stream.best());
-            names.release();
+        runtime::GlNames names(gl);
+        runtime::Relight relight(gl);
+        const runtime::SavedState saved(gl);
+        if (relight.upload(asset.view(), {0, 0}, names) != OPALINE_OK) {
+            std::fprintf(stderr, "%s\n", opaline_last_error());
+            return 1;
         }
+        const Times relit = measure(queries, [&] {
+            relight.light(light, names);
+            relight.dot(runtime::dark_emitters());
+        });
+        std::printf("%u band%s: %.4f ms (wall %.4f ms)\n", bands, bands == 1 ? "" : "s", relit.gpu,
+                    relit.wall);
+        names.release();
     }
     return runtime::check_errors(gl, "relighting") == OPALINE_OK ? 0 : 1;
 }

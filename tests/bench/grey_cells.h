@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <span>
 #include <string>
 
 #include "formats/gltf/import_gltf.h"
@@ -41,21 +40,22 @@ inline void fill_scene(formats::Scene& scene, const GreyCell& cell) {
     }
 }
 
-/// For each LENGTH,ALBEDO,G after the scene's file, prints the start of a row and calls
-/// print_cell(filled scene). Returns the exit code.
+/// For each LENGTH,ALBEDO,G after the scene's file among a program's arguments, prints the start of
+/// a row and calls print_cell(filled scene). Returns the exit code.
 template <class Print>
-int print_grey_cells(const char* program, std::span<char*> argument, Print&& print_cell) {
-    if (argument.size() < 2) {
-        std::fprintf(stderr, "usage: %s SCENE LENGTH,ALBEDO,G...\n", program);
+int print_grey_cells(int count, char** argument, Print&& print_cell) {
+    if (count < 3) {
+        std::fprintf(stderr, "usage: %s SCENE LENGTH,ALBEDO,G...\n", argument[0]);
         return 2;
     }
-    const std::string file = argument[0];
+    const std::string file = argument[1];
     auto imported = formats::import_gltf(file);
     if (!imported) {
         std::fprintf(stderr, "cannot read %s\n", file.c_str());
         return 1;
     }
-    for (const char* text : argument.subspan(1)) {
+    for (int i = 2; i < count; ++i) {
+        const char* const text = argument[i];
         GreyCell cell;
         if (std::sscanf(text, "%f,%f,%f", &cell.length, &cell.albedo, &cell.cosine) != 3) {
             std::fprintf(stderr, "not LENGTH,ALBEDO,G: %s\n", text);

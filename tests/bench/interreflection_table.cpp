@@ -1,26 +1,25 @@
 // Bounced light of the bake against an exact final gather, against path tracing, and its cost.
-//   opaline_bench interreflection-table gather SCENE RAYS: errors of 160 receivers against 16384 rays
+//   opaline_bench interreflection-table gather SCENE RAYS: errors of 160 receivers against 16384
+//   rays
 //     that read the nearest of as many scatterers as there are, whose light is found with 256 rays
 //     each; of each error, the part that rays of other seeds share.
 //   ... truth SCENE: a file of production against path tracing of all light.
 //   ... cost SCENE: seconds and rays of stages without and with interreflection.
-// SCENE: box (a room open to the front, with a block in it), detailed (the same, of checkers),
-// room (no block), ball (dented, over a floor), statue; dense (the box of a mesh so fine that
-// receivers read sites).
+// SCENE: box (a room open to the front, with a block in it), room (no block), ball (dented, over a
+// floor), statue.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <tbb/parallel_for.h>
-#include <memory>
+
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/effects.h"
-#include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_gather.h"
 #include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
@@ -36,7 +35,6 @@
 #include "formats/opal/haar.h"
 #include "runtime/light_vector.h"
 #include "tests/bench/bench.h"
-#include "tests/bench/visible_footprint.h"
 #include "tests/support/bake.h"
 #include "tests/support/effects.h"
 #include "tests/support/scenes.h"
@@ -48,10 +46,9 @@ namespace {
 constexpr std::uint32_t kMap = kBounceCubemap;
 constexpr std::size_t kTexels = 6 * kMap * kMap;
 
-enum class Block { none, one };
-
-formats::Scene make_open_box(bool detailed, std::uint32_t n, Block has = Block::one) {
+formats::Scene make_open_box(bool has_block) {
     using tests::make_quad;
+    constexpr std::uint32_t n = 24;
     formats::Scene scene = tests::make_scene({
         make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, n),  // floor, up
         make_quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, n),  // ceiling, down
@@ -59,24 +56,12 @@ formats::Scene make_open_box(bool detailed, std::uint32_t n, Block has = Block::
         make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, n),  // left, toward +x
         make_quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, n),  // right, toward -x
     });
-    if (has == Block::one) {
+    if (has_block) {
         scene.primitives.push_back(tests::transformed(tests::make_cube(6, false), glm::mat3(1),
                                                       0.15f, {0.4f, 0.16f, 0.4f}));
         scene.primitives.back().material = 0;
     }
     scene.materials[0].base_color = {0.7f, 0.7f, 0.7f};
-    if (detailed) {
-        for (auto& p : scene.primitives) {
-            for (std::size_t v = 0; v < p.position.size(); ++v) {
-                const glm::vec3 x = p.position[v];
-                const int c =
-                    static_cast<int>(std::floor(x.x * 12 + .01f) + std::floor(x.y * 12 + .01f) +
-                                     std::floor(x.z * 12 + .01f));
-                const float a = c & 1 ? 1.2f : 0.15f;
-                p.color.push_back({a, a, a});
-            }
-        }
-    }
     return scene;
 }
 
@@ -207,17 +192,17 @@ void compare(const World& w, const World& fine, std::uint32_t n) {
     for (std::size_t i = 0; i < wanted; ++i)
         at.push_back(w.receivers[(2 * i + 1) * w.receivers.size() / (2 * wanted)]);
     std::vector<Row> truth(wanted), env(wanted);
-    const auto gather = [&](const BounceTree& tree, std::size_t i, std::uint32_t count,
-                            LookUp look_up, std::uint64_t seed) {
+    const auto gather = [&](const BounceTree& tree, const Receiver& from, const BounceGrid& grid,
+                            LookUp look_up, std::uint64_t seed, Row& row) {
         std::vector<NodeWeight> weights;
-        weigh_bounces(w.scene, w.rays, tree, at[i], make_bounce_grid(count), seed, weights,
-                      look_up);
-        Row r(kTexels);
-        add_node_rows(tree, weights, r);
-        return r;
+        row.assign(kTexels, 0);
+        const BounceGather found =
+            weigh_bounces(w.scene, w.rays, tree, from, grid, seed, weights, look_up);
+        add_node_rows(tree, weights, row);
+        return found.rays;
     };
     tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) {
-        truth[i] = gather(*exact.tree, i, 16384, LookUp::nearest, 99);
+        gather(*exact.tree, at[i], make_bounce_grid(16384), LookUp::nearest, 99, truth[i]);
         env[i] = env_row(w, d, at[i]);
     });
     double all_norm = 0;
@@ -226,103 +211,62 @@ void compare(const World& w, const World& fine, std::uint32_t n) {
             all_norm += std::pow(double(truth[i][k]) + env[i][k], 2);
     std::printf(
         "%zu dense scatterers; RMS errors of bounced light in percent of all light (of that, what "
-        "other seeds share): rows, white, studio, sky\n",
+        "other seeds share)\nrays | rows | white | studio | sky\n",
         exact.points.size());
-    // Error, and of that what rays of other seeds share: errors of the look-up and of scatterers.
-    constexpr std::uint64_t kSeeds = 8;
-    const auto report = [&](const char* what, auto&& own) {
-        std::vector<std::vector<Row>> rows(wanted, std::vector<Row>(kSeeds));
-        std::vector<std::uint64_t> traced(wanted);
-        tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) {
-            for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
-                rows[i][seed] = own(i, seed, traced[i]);
-        });
-        double err = 0, bias = 0, le[3]{}, lb[3]{}, la[3]{};
-        for (std::size_t i = 0; i < wanted; ++i) {
-            const auto add = [&](auto&& of_seed, double& e, double& b) {
-                double sum = 0, squares = 0;
-                for (std::size_t s = 0; s < kSeeds; ++s) {
-                    const double off = of_seed(rows[i][s]);
-                    sum += off;
-                    squares += off * off;
-                }
-                e += squares / kSeeds;
-                // Without bias of its own: products of different seeds.
-                b += (sum * sum - squares) / (kSeeds * (kSeeds - 1));
-            };
-            for (std::size_t k = 0; k < kTexels; ++k)
-                add([&](const Row& r) { return double(r[k]) - truth[i][k]; }, err, bias);
-            for (int l = 0; l < 3; ++l) {
-                double all = 0;
-                for (std::size_t k = 0; k < kTexels; ++k)
-                    all += (double(truth[i][k]) + env[i][k]) * lights[l][k];
-                la[l] += all * all;
-                add(
-                    [&](const Row& r) {
-                        double off = 0;
-                        for (std::size_t k = 0; k < kTexels; ++k)
-                            off += (double(r[k]) - truth[i][k]) * lights[l][k];
-                        return off;
-                    },
-                    le[l], lb[l]);
-            }
-        }
-        std::uint64_t rays_of_all = 0;
-        for (const std::uint64_t r : traced)
-            rays_of_all += r;
-        const auto percent = [](double a, double b) {
-            return 100 * std::sqrt(std::max(0.0, a) / b);
-        };
-        std::printf("%-28s %6.1f rays | %.3f (%.3f)", what,
-                    double(rays_of_all) / double(wanted * kSeeds), percent(err, all_norm),
-                    percent(bias, all_norm));
-        for (int l = 0; l < 3; ++l)
-            std::printf(" | %.3f (%.3f)", percent(le[l], la[l]), percent(lb[l], la[l]));
-        std::printf("\n");
-        std::fflush(stdout);
-    };
     BakeOptions options;
     options.set(kBounceRays, n);
     options.effects = {"direct", "interreflection"};
     std::uint64_t rays = 0;
     const auto light = find_bounce_light(
         {w.bake, resolve_knobs(options).value(), w.context, w.layouts, {}, {}}, rays);
-    const auto with = [&](const BounceTree& tree, LookUp look_up, const BounceGrid& grid) {
-        return [&, look_up](std::size_t i, std::uint64_t seed, std::uint64_t& traced) {
-            std::vector<NodeWeight> weights;
-            traced +=
-                weigh_bounces(w.scene, w.rays, tree, at[i], grid, seed, weights, look_up).rays;
-            Row r(kTexels);
-            add_node_rows(tree, weights, r);
-            return r;
-        };
-    };
-    const BounceGrid even = make_bounce_grid(n), cut = make_cut_grid(n);
-    report("nearest scatterer", with(light->tree, LookUp::nearest, even));
-    report("node", with(light->tree, LookUp::node, even));
-    report("footprint", with(light->tree, LookUp::kernel, even));
-    report("exact light, same rays", with(*exact.tree, LookUp::nearest, even));
-    for (const bool only_seen : {false, true}) {
-        report(only_seen ? "footprint, seen nodes" : "footprint without tilt",
-               [&](std::size_t i, std::uint64_t seed, std::uint64_t& traced) {
-                   std::vector<NodeWeight> weights;
-                   const HiddenNodes nodes = weigh_seen_nodes(w.scene, w.rays, light->tree, at[i],
-                                                              even, seed, only_seen, weights);
-                   traced += even.count() + nodes.looked_at;
-                   Row r(kTexels);
-                   add_node_rows(light->tree, weights, r);
-                   return r;
-               });
-    }
-    report("nearest scatterer, cut", with(light->tree, LookUp::nearest, cut));
-    report("footprint, cut", with(light->tree, LookUp::kernel, cut));
-    report("exact light, cut", with(*exact.tree, LookUp::nearest, cut));
-    report("as baked", [&](std::size_t i, std::uint64_t, std::uint64_t& traced) {
-        Row r(kTexels * light->bands);
-        traced += add_bounced(*light, {at[i]}, kMap, r);
-        r.resize(kTexels);
-        return r;
+    // Error, and of that what rays of other seeds share: errors of the look-up and of scatterers.
+    constexpr std::uint64_t kSeeds = 8;
+    const BounceGrid cut = make_cut_grid(n);
+    std::vector<std::vector<Row>> rows(wanted, std::vector<Row>(kSeeds));
+    std::vector<std::uint64_t> traced(wanted);
+    tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) {
+        for (std::uint64_t seed = 0; seed < kSeeds; ++seed)
+            traced[i] += gather(light->tree, at[i], cut, LookUp::kernel, seed, rows[i][seed]);
     });
+    double err = 0, bias = 0, le[3]{}, lb[3]{}, la[3]{};
+    for (std::size_t i = 0; i < wanted; ++i) {
+        const auto add = [&](auto&& of_seed, double& e, double& b) {
+            double sum = 0, squares = 0;
+            for (std::size_t s = 0; s < kSeeds; ++s) {
+                const double off = of_seed(rows[i][s]);
+                sum += off;
+                squares += off * off;
+            }
+            e += squares / kSeeds;
+            // Without bias of its own: products of different seeds.
+            b += (sum * sum - squares) / (kSeeds * (kSeeds - 1));
+        };
+        for (std::size_t k = 0; k < kTexels; ++k)
+            add([&](const Row& r) { return double(r[k]) - truth[i][k]; }, err, bias);
+        for (int l = 0; l < 3; ++l) {
+            double all = 0;
+            for (std::size_t k = 0; k < kTexels; ++k)
+                all += (double(truth[i][k]) + env[i][k]) * lights[l][k];
+            la[l] += all * all;
+            add(
+                [&](const Row& r) {
+                    double off = 0;
+                    for (std::size_t k = 0; k < kTexels; ++k)
+                        off += (double(r[k]) - truth[i][k]) * lights[l][k];
+                    return off;
+                },
+                le[l], lb[l]);
+        }
+    }
+    std::uint64_t rays_of_all = 0;
+    for (const std::uint64_t r : traced)
+        rays_of_all += r;
+    const auto percent = [](double a, double b) { return 100 * std::sqrt(std::max(0.0, a) / b); };
+    std::printf("%.1f | %.3f (%.3f)", double(rays_of_all) / double(wanted * kSeeds),
+                percent(err, all_norm), percent(bias, all_norm));
+    for (int l = 0; l < 3; ++l)
+        std::printf(" | %.3f (%.3f)", percent(le[l], la[l]), percent(lb[l], la[l]));
+    std::printf("\n");
 }
 
 // Prints stages; rays of a stage do not depend on what else the machine does.
@@ -362,14 +306,10 @@ int opaline::tests::interreflection_table(int argc, char** argv) {
     using namespace opaline;
     using namespace opaline::bake;
     const std::string what = argc > 1 ? argv[1] : "", name = argc > 2 ? argv[2] : "";
-    const bool is_known = name == "box" || name == "detailed" || name == "dense" ||
-                          name == "room" || name == "ball" || name == "statue";
-    const formats::Scene scene = name == "box"        ? make_open_box(false, 24)
-                                 : name == "detailed" ? make_open_box(true, 24)
-                                 : name == "dense"    ? make_open_box(false, 64)
-                                 : name == "room"     ? make_open_box(false, 24, Block::none)
-                                 : name == "ball"     ? tests::make_dented_ball()
-                                                      : example("statue");
+    const bool is_known = name == "box" || name == "room" || name == "ball" || name == "statue";
+    const formats::Scene scene = name == "box" || name == "room" ? make_open_box(name == "box")
+                                 : name == "ball"                ? tests::make_dented_ball()
+                                                                 : example("statue");
     if (is_known && what == "gather" && argc > 3) {
         compare(World(scene), World(name == "ball" ? split(split(scene)) : scene),
                 static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)));
@@ -382,7 +322,8 @@ int opaline::tests::interreflection_table(int argc, char** argv) {
         }
     } else {
         std::fprintf(
-            stderr, "opaline_bench interreflection-table gather SCENE RAYS | truth SCENE | cost SCENE\n");
+            stderr,
+            "opaline_bench interreflection-table gather SCENE RAYS | truth SCENE | cost SCENE\n");
         return 2;
     }
     return 0;

@@ -1,19 +1,12 @@
 // How far the model is from the Monte Carlo reference, as the table of RESULTS.md states it: light
 // that files of two to six seeds show over light that there is, along the normals of some receivers
-// side by side, with the standard error of both. `opaline_bench model-table [ETA[,ALBEDO] [K
-// [COLUMN...]]]` prints it as markdown, of one index or row, with K rows by view (0: as many as the
-// quality takes) and of some columns, counted from 0, where they are given; about 40 minutes in
-// all.
+// side by side, with the standard error of both, as markdown; about 40 minutes.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <span>
 #include <utility>
 #include <vector>
 
-#include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
@@ -28,7 +21,7 @@ namespace opaline::bake {
 namespace {
 
 /// Radiance 1 from all sides, or from above alone.
-formats::Environment make_light(bool above) {
+formats::Environment make_model_light(bool above) {
     formats::Environment sky;
     sky.width = 2;
     sky.height = 4096;
@@ -79,8 +72,7 @@ struct Mean {
 
 // Light that a file shows along the normals, mean of the receivers; over seeds of the walks, until
 // its standard error is 1 %.
-Mean shown_light(const Body& body, const formats::Scene& scene, const formats::Environment& light,
-                 double views) {
+Mean shown_light(const Body& body, const formats::Scene& scene, const formats::Environment& light) {
     constexpr int kFewest = 2, kMost = 6;
     Mean shown{0, HUGE_VAL};
     double sum = 0, squares = 0;
@@ -92,9 +84,6 @@ Mean shown_light(const Body& body, const formats::Scene& scene, const formats::E
         options.coefficients = kAllCoefficients;
         options.quality = Quality::production;
         options.seed = static_cast<std::uint64_t>(seed);
-        if (views > 0) {
-            options.set(kViewTerms, views);
-        }
         const BakeResult baked = run_bake(scene, resolve_knobs(options).value(), {}).value();
         const runtime::LightVector projected = runtime::project_environment(light, 16);
         double mean = 0;
@@ -146,10 +135,10 @@ Mean true_light(const Body& body, const formats::Scene& scene, const formats::En
     return mean;
 }
 
-void print_ratio(const Body& body, const formats::Medium& medium, double views) {
+void print_ratio(const Body& body, const formats::Medium& medium) {
     const formats::Scene scene = tests::make_translucent_scene(body.primitives, medium);
-    const formats::Environment light = make_light(body.back_lit);
-    const Mean shown = shown_light(body, scene, light, views);
+    const formats::Environment light = make_model_light(body.back_lit);
+    const Mean shown = shown_light(body, scene, light);
     const Mean truth = true_light(body, scene, light);
     const double ratio = shown.value / truth.value;
     std::printf(" %.3f ± %.3f |", ratio,
@@ -157,57 +146,30 @@ void print_ratio(const Body& body, const formats::Medium& medium, double views) 
     std::fflush(stdout);
 }
 
-void print_table(std::span<const float> indices, std::span<const float> albedos, double views,
-                 std::span<const std::size_t> columns) {
-    std::vector<Body> bodies{make_sheet_body("slab of 40, white", 0.4f, false),
-                             make_ball_body("ball of 10, white", 0.05f, false),
-                             make_sheet_body("sheet of 1, white", 0.01f, false),
-                             make_sheet_body("sheet of 1, from behind", 0.01f, true),
-                             make_sheet_body("sheet of 5, from behind", 0.05f, true),
-                             make_ball_body("ball of 10, from behind", 0.05f, true)};
-    if (!columns.empty()) {
-        std::vector<Body> some;
-        for (const std::size_t column : columns) {
-            some.push_back(bodies[std::min(column, bodies.size() - 1)]);
-        }
-        bodies = std::move(some);
-    }
+}  // namespace
+}  // namespace opaline::bake
+
+int opaline::tests::model_table(int, char**) {
+    using namespace opaline::bake;
+    const Body bodies[] = {make_sheet_body("slab of 40, white", 0.4f, false),
+                           make_ball_body("ball of 10, white", 0.05f, false),
+                           make_sheet_body("sheet of 1, white", 0.01f, false),
+                           make_sheet_body("sheet of 1, from behind", 0.01f, true),
+                           make_sheet_body("sheet of 5, from behind", 0.05f, true),
+                           make_ball_body("ball of 10, from behind", 0.05f, true)};
     std::printf("| index, albedo |");
     for (const Body& body : bodies) {
         std::printf(" %s |", body.name);
     }
-    std::printf("\n|---|");
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-        std::printf("---:|");
-    }
-    std::printf("\n");
-    for (const float eta : indices) {
-        for (const float albedo : albedos) {
+    std::printf("\n|---|---:|---:|---:|---:|---:|---:|\n");
+    for (const float eta : {1.0f, 1.3f, 1.5f}) {
+        for (const float albedo : {0.5f, 0.9f, 0.99f}) {
             std::printf("| %g, %g |", static_cast<double>(eta), static_cast<double>(albedo));
             for (const Body& body : bodies) {
-                print_ratio(body, tests::make_grey_medium(100 * albedo, 100 * (1 - albedo), eta),
-                            views);
+                print_ratio(body, make_grey_medium(100 * albedo, 100 * (1 - albedo), eta));
             }
             std::printf("\n");
         }
     }
-}
-
-}  // namespace
-}  // namespace opaline::bake
-
-int opaline::tests::model_table(int count, char** argument) {
-    constexpr std::array<float, 3> kIndices{1.0f, 1.3f, 1.5f}, kAlbedos{0.5f, 0.9f, 0.99f};
-    float index = 0, albedo = 0;
-    const int given = count > 1 ? std::sscanf(argument[1], "%f,%f", &index, &albedo) : 0;
-    const double views = count > 2 ? std::strtod(argument[2], nullptr) : 0;
-    std::vector<std::size_t> columns;
-    for (int i = 3; i < count; ++i) {
-        columns.push_back(std::strtoul(argument[i], nullptr, 10));
-    }
-    opaline::bake::print_table(
-        given > 0 ? std::span<const float>(&index, 1) : std::span<const float>(kIndices),
-        given > 1 ? std::span<const float>(&albedo, 1) : std::span<const float>(kAlbedos), views,
-        columns);
     return 0;
 }

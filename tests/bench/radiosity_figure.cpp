@@ -1,17 +1,13 @@
 // Figure 4 of [Suykens2001] remade: a room with a table, a diffuse ball and one of rough glass, lit
 // by a lamp below the ceiling and a spot, by particles alone. Three panels: elements as footprints
-// join them, with their edges; what receivers gather; elements of footprints that no gradient
-// limits. usage: opaline_bench radiosity-figure OUT.png [PARTICLES]; prints groups of each surface, with
-// and without the limit by the gradient.
+// join them, with their edges; elements that are gathered; what receivers gather.
+// usage: opaline_bench radiosity-figure OUT.png [PARTICLES]
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
 #include <numbers>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,23 +39,21 @@ formats::Primitive box(glm::vec3 centre, glm::vec3 half) {
 // Metres, y up: 4 wide, 3 high, 4 deep; open to the eye.
 formats::Scene make_room() {
     formats::Scene scene;
-    const auto wall = [&](const char* name, formats::Primitive primitive, formats::Rgb color) {
-        primitive.name = name;
+    const auto wall = [&](formats::Primitive primitive, formats::Rgb color) {
         tests::add_surface(scene, std::move(primitive), 1).base_color = color;
     };
-    wall("floor", tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), {0.6f, 0.6f, 0.6f});
-    wall("ceiling", tests::make_quad({-2, 3, -2}, {4, 0, 0}, {0, 0, 4}), {0.8f, 0.8f, 0.8f});
-    wall("back wall", tests::make_quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}), {0.8f, 0.8f, 0.8f});
-    wall("left wall", tests::make_quad({-2, 0, -2}, {0, 3, 0}, {0, 0, 4}), {0.75f, 0.2f, 0.15f});
-    wall("right wall", tests::make_quad({2, 0, -2}, {0, 0, 4}, {0, 3, 0}), {0.2f, 0.3f, 0.7f});
-    wall("table", box({0, 0.95f, 0}, {1, 0.04f, 0.65f}), {0.65f, 0.5f, 0.35f});
+    wall(tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), {0.6f, 0.6f, 0.6f});
+    wall(tests::make_quad({-2, 3, -2}, {4, 0, 0}, {0, 0, 4}), {0.8f, 0.8f, 0.8f});
+    wall(tests::make_quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}), {0.8f, 0.8f, 0.8f});
+    wall(tests::make_quad({-2, 0, -2}, {0, 3, 0}, {0, 0, 4}), {0.75f, 0.2f, 0.15f});
+    wall(tests::make_quad({2, 0, -2}, {0, 0, 4}, {0, 3, 0}), {0.2f, 0.3f, 0.7f});
+    wall(box({0, 0.95f, 0}, {1, 0.04f, 0.65f}), {0.65f, 0.5f, 0.35f});
     for (const float x : {-0.9f, 0.9f}) {
         for (const float z : {-0.55f, 0.55f})
-            wall("leg", box({x, 0.45f, z}, {0.05f, 0.45f, 0.05f}), {0.65f, 0.5f, 0.35f});
+            wall(box({x, 0.45f, z}, {0.05f, 0.45f, 0.05f}), {0.65f, 0.5f, 0.35f});
     }
-    wall("diffuse ball", tests::make_sphere(5, 0.28f, {-0.5f, 1.275f, -0.1f}), {0.8f, 0.8f, 0.8f});
+    wall(tests::make_sphere(5, 0.28f, {-0.5f, 1.275f, -0.1f}), {0.8f, 0.8f, 0.8f});
     formats::Primitive ball = tests::make_sphere(6, 0.3f, {0.42f, 1.4f, 0.1f});
-    ball.name = "glass ball";
     formats::Medium glass;
     glass.sigma_s = glass.sigma_a = {0, 0, 0};
     glass.eta = 1.5f;
@@ -68,7 +62,6 @@ formats::Scene make_room() {
     tests::add_surface(scene, tests::make_quad({-0.15f, 2.7f, -0.15f}, {0.3f, 0, 0}, {0, 0, 0.3f}),
                        0, 60);
     scene.lights.push_back({.type = formats::Light::Type::spot,
-                            .name = "spot",
                             .intensity = {12, 11, 9},
                             .position = {0, 2.4f, 1.5f},
                             .direction = glm::normalize(glm::vec3(-0.5f, -0.15f, -1)),
@@ -171,29 +164,6 @@ glm::dvec3 shade_gathered(const View& view, const LampLight& light, std::uint32_
                                    std::uint64_t{y} * kWidth + x, rays)[0];
 }
 
-void print_groups(const View& view, const ElementLight& light, const ElementLight& caustic) {
-    std::printf(
-        "| surface | groups | mean area, cm^2 | of the caustic | brightest, lx |\n"
-        "|---|---:|---:|---:|---:|\n");
-    for (std::uint32_t p = 0; p < view.scene.primitives.size(); ++p) {
-        const formats::Primitive& primitive = view.scene.primitives[p];
-        const std::size_t first = view.layout.element({p, 0}, {1, 0, 0});
-        const std::size_t end = p + 1 < view.scene.primitives.size()
-                                    ? view.layout.element({p + 1, 0}, {1, 0, 0})
-                                    : view.layout.size();
-        std::set<std::uint32_t> groups, of_caustic;
-        float brightest = 0;
-        for (std::size_t i = std::min(first, end); i < end; ++i) {
-            groups.insert(light.together[i]);
-            of_caustic.insert(caustic.together[i]);
-            brightest = std::max(brightest, caustic.irradiance[i].y);
-        }
-        std::printf("| %s | %zu | %.0f | %zu | %.1f |\n", primitive.name.c_str(), groups.size(),
-                    1e4 * formats::surface_area(primitive) / static_cast<double>(groups.size()),
-                    of_caustic.size(), static_cast<double>(brightest));
-    }
-}
-
 void write(const std::vector<Picture>& panels, const std::string& path) {
     constexpr std::uint32_t kGap = 6;
     const auto count = static_cast<std::uint32_t>(panels.size());
@@ -226,35 +196,28 @@ void make_figure(const std::string& path, std::uint32_t particles) {
     const ElementLayout layout(scene, 4 * reflecting_area(scene) / particles);
     const View view{scene, rays, layout, {}};
     std::uint64_t traced = 0;
-    for (const double limit : {0.7, std::numeric_limits<double>::infinity()}) {
-        const ParticleLight light =
-            trace_particles(scene, rays, sources[0], layout,
-                            {particles, 0, 0, 0, nullptr, false, limit}, Context{}, traced);
-        std::printf("\n%s\n", limit < 1 ? "Limited by the gradient" : "Not limited");
-        print_groups(view, layout.join(light.all), layout.join(light.caustic, kCausticElements));
-        if (limit > 1) break;
-        std::vector<Picture> panels;
-        const std::vector<ElementLight> gathered{layout.join(light.all, kGatheredElements)};
-        // As a bake has it: 16 times the particles, 2 million at most.
-        const std::uint32_t more = std::max(particles, std::min(16 * particles, 2000000u));
-        const ElementLayout fine(scene, 4 * reflecting_area(scene) / more);
-        const std::vector<ElementLight> caustics{
-            fine.join(trace_particles(scene, rays, sources[0], fine, {more, 0, 0, 0, nullptr, true},
-                                      Context{}, traced)
-                          .caustic,
-                      kCausticElements)};
-        const ElementLight elements = layout.join(light.all);
-        for (const ElementLight* const shown : {&elements, gathered.data()}) {
-            panels.push_back(render([&](std::uint32_t x, std::uint32_t y) {
-                return shade_elements(view, *shown, x, y);
-            }));
-        }
-        const LampLight lit{scene, rays,    sources, layout,   gathered, kGatherRays,
-                            0,     nullptr, nullptr, caustics, &fine};
+    const ParticleLight light = trace_particles(scene, rays, sources[0], layout,
+                                                {.particles = particles}, Context{}, traced);
+    const std::vector<ElementLight> gathered{layout.join(light.all, kGatheredElements)};
+    // As a bake has it: 16 times the particles, 2 million at most.
+    const std::uint32_t more = std::max(particles, std::min(16 * particles, 2000000u));
+    const ElementLayout fine(scene, 4 * reflecting_area(scene) / more);
+    const std::vector<ElementLight> caustics{
+        fine.join(trace_particles(scene, rays, sources[0], fine,
+                                  {.particles = more, .only_caustic = true}, Context{}, traced)
+                      .caustic,
+                  kCausticElements)};
+    const ElementLight elements = layout.join(light.all);
+    std::vector<Picture> panels;
+    for (const ElementLight* const shown : {&elements, gathered.data()}) {
         panels.push_back(render(
-            [&](std::uint32_t x, std::uint32_t y) { return shade_gathered(view, lit, x, y); }));
-        write(panels, path);
+            [&](std::uint32_t x, std::uint32_t y) { return shade_elements(view, *shown, x, y); }));
     }
+    const LampLight lit{scene, rays,    sources, layout,   gathered, kGatherRays,
+                        0,     nullptr, nullptr, caustics, &fine};
+    panels.push_back(
+        render([&](std::uint32_t x, std::uint32_t y) { return shade_gathered(view, lit, x, y); }));
+    write(panels, path);
 }
 
 }  // namespace

@@ -158,35 +158,21 @@ void print_radiance(const Cloud& cloud) {
     const RadianceTable table = make_radiance_table(phase.medium);
     const GaussLegendre rule = make_gauss_legendre(kViews);
     const std::vector<View> views = list_views(rule);
-    SlabRadianceRequest request{7.3, 6, light_cosines(), rule.node, 64, 48, 2};
+    const SlabRadianceRequest request{7.3, 6, light_cosines(), rule.node, 64, 48, 2};
     const auto second = solve_slab_radiance(phase.medium, request);
-    request.first_order = 3;
-    const auto third = solve_slab_radiance(phase.medium, request);
     const auto shares =
         solve_slab(phase.medium, {request.optical_depth, request.halvings, request.lights, 64, 3});
     std::printf("\n%s: RMS error of the radiance over its RMS, %%, above / below the layer\n\n",
                 cloud.name);
-    std::printf("| depth | degrees | profile | 3+ in 1 mode | 2 | 3 | table of 2+ |\n");
-    std::printf("|---:|---:|---:|---:|---:|---:|---:|\n");
+    std::printf("| depth | degrees | profile | table of 2+ |\n|---:|---:|---:|---:|\n");
     for (std::size_t j = 0; j < second.size(); ++j) {
         for (std::size_t l = 0; l < kDegrees.size(); ++l) {
             const double depth = second[j].optical_depth, light = request.lights[l];
-            std::array<std::array<double, 5>, 2> percent{};
+            std::array<Rms, 2> by_profile, by_table, size;
             for (const bool below : {false, true}) {
-                std::array<Rms, 5> error;
-                Rms size;
                 const Shares flux = true_shares(shares[j], l);
                 const double rest = flux[below ? 2 : 5];
                 const double a = below ? depth / 2 : (1 - phase.medium.moment[1]) * depth;
-                const auto modes = [&](const SlabRadiance& all, std::size_t count, const View& v) {
-                    SlabRadiance few;
-                    few.incidents = all.incidents;
-                    few.views = all.views;
-                    few.modes = count;
-                    return light / pi *
-                           eval_slab_radiance(few, below ? all.transmitted : all.reflected, v.index,
-                                              l, v.azimuth);
-                };
                 for (const View& v : views) {
                     const double sines = std::sqrt((1 - light * light) * (1 - v.cosine * v.cosine));
                     const double angle = std::acos(std::clamp(
@@ -198,26 +184,21 @@ void print_radiance(const Cloud& cloud) {
                     const double twice =
                         eval_table(phase.twice, angle) *
                         (below ? transmitted_twice : reflected_twice)(depth, light, v.cosine);
-                    const double truth = once + modes(second[j], second[j].modes, v);
-                    size.add(truth, v.weight);
-                    const double profile = light * rest * spread_profile(a, v.cosine) / pi;
-                    error[0].add(once + twice + profile - truth, v.weight);
-                    for (std::size_t m = 1; m <= 3; ++m) {
-                        error[m].add(once + twice + modes(third[j], m, v) - truth, v.weight);
-                    }
-                    error[4].add(
-                        once +
-                            eval_radiance_table(table, depth, light, v.cosine, v.azimuth, below) -
-                            truth,
+                    const auto& side = below ? second[j].transmitted : second[j].reflected;
+                    const double more =
+                        light / pi * eval_slab_radiance(second[j], side, v.index, l, v.azimuth);
+                    size[below].add(once + more, v.weight);
+                    by_profile[below].add(
+                        twice + light * rest * spread_profile(a, v.cosine) / pi - more, v.weight);
+                    by_table[below].add(
+                        eval_radiance_table(table, depth, light, v.cosine, v.azimuth, below) - more,
                         v.weight);
-                }
-                for (std::size_t q = 0; q < error.size(); ++q) {
-                    percent[below ? 1 : 0][q] = 100 * error[q].value() / size.value();
                 }
             }
             std::printf("| %.3f | %.0f |", depth, kDegrees[l]);
-            for (std::size_t q = 0; q < percent[0].size(); ++q) {
-                std::printf(" %.1f / %.1f |", percent[0][q], percent[1][q]);
+            for (const auto* error : {&by_profile, &by_table}) {
+                std::printf(" %.1f / %.1f |", 100 * (*error)[0].value() / size[0].value(),
+                            100 * (*error)[1].value() / size[1].value());
             }
             std::printf("\n");
         }

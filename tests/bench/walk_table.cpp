@@ -92,8 +92,5 @@ void print_cell(const formats::Scene& scene) {
 }  // namespace opaline::bake
 
 int opaline::tests::walk_table(int count, char** argument) {
-    return opaline::bake::print_grey_cells(
-        "opaline_bench walk-table", std::span(argument, static_cast<std::size_t>(count)).subspan(1),
-        opaline::bake::print_cell);
-    return 0;
+    return opaline::bake::print_grey_cells(count, argument, opaline::bake::print_cell);
 }

@@ -1,8 +1,8 @@
 // Writes the cumulus of `opaline example cumulus` with other voxels, to measure bakes of larger
 // grids:
 //
-//   opaline_bench write-cloud OUT.vdb [VOXEL]     edges in metres, default 3.5: about a million active
-//   voxels
+//   opaline_bench write-cloud OUT.vdb [VOXEL]     edges in metres, default 3.5: about a million
+//   active voxels
 #include <cstdio>
 #include <cstdlib>
 
@@ -13,7 +13,8 @@
 int opaline::tests::write_cloud(int argc, char** argv) {
     const double voxel = argc > 2 ? std::atof(argv[2]) : 3.5;
     if (argc < 2 || argv[1][0] == '-' || !(voxel >= 1 && voxel <= 100)) {
-        std::fputs("usage: opaline_bench write-cloud OUT.vdb [VOXEL], VOXEL from 1 to 100 m\n", stderr);
+        std::fputs("usage: opaline_bench write-cloud OUT.vdb [VOXEL], VOXEL from 1 to 100 m\n",
+                   stderr);
         return 2;
     }
     const auto grid = opaline::bake::make_cumulus_density(voxel);

@@ -16,6 +16,9 @@ namespace {
 
 using std::numbers::pi;
 
+using tests::MieAmplitudes;
+using tests::sum_amplitudes;
+
 using Complex = std::complex<double>;
 
 DropletOptics average(const DropletDistribution& droplets, double wavelength, Complex index,

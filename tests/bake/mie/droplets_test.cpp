@@ -12,6 +12,12 @@ namespace {
 
 using std::numbers::pi;
 
+// <r^power>
+double mean_radius_power(const DropletDistribution& droplets, double power) {
+    return std::exp(power * std::log(characteristic_radius(droplets)) +
+                    std::lgamma(droplets.gamma + power) - std::lgamma(droplets.gamma));
+}
+
 TEST(Droplets, MomentsAreThoseOfTheGammaDistribution) {
     const DropletDistribution d = tests::paper_droplets();
     EXPECT_NEAR(characteristic_radius(d), 1.75e-6, 1e-18);

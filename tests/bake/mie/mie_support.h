@@ -9,6 +9,7 @@
 
 #include "bake/mie/droplet_optics.h"
 #include "bake/mie/refractive_index.h"
+#include "bake/mie/sphere_scattering.h"
 
 namespace opaline::tests {
 
@@ -40,6 +41,28 @@ inline const bake::DropletOptics& paper_optics(double nm, std::complex<double> i
 }
 inline const bake::DropletOptics& paper_optics(double nm) {
     return paper_optics(nm, water_at(nm));
+}
+
+/// Light scattered by the angle theta, perpendicular (S_1) and parallel (S_2) to the plane of
+/// scattering, straight from the definition: |S_1|^2 + |S_2|^2 over 2 k^2 C_sca is the phase
+/// function.
+struct MieAmplitudes {
+    std::complex<double> s1, s2;
+};
+inline MieAmplitudes sum_amplitudes(const bake::MieSeries& series, double cosine) {
+    MieAmplitudes sum;
+    double before = 0, now = 1;  // pi_{n-1}, pi_n
+    for (std::size_t i = 0; i < series.a.size(); ++i) {
+        const auto n = static_cast<double>(i + 1);
+        const double tau = n * cosine * now - (n + 1) * before;
+        const double scale = (2 * n + 1) / (n * (n + 1));
+        sum.s1 += scale * (series.a[i] * now + series.b[i] * tau);
+        sum.s2 += scale * (series.a[i] * tau + series.b[i] * now);
+        const double next = ((2 * n + 1) * cosine * now - (n + 1) * before) / n;
+        before = now;
+        now = next;
+    }
+    return sum;
 }
 
 /// Small droplets, whose mean takes milliseconds.

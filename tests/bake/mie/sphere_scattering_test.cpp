@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/scattering/gauss_legendre.h"
+#include "tests/bake/mie/mie_support.h"
 #include "tests/support/cloud_table.h"
 
 namespace opaline::bake {
@@ -16,6 +17,9 @@ namespace {
 using Complex = std::complex<double>;
 
 using std::numbers::pi;
+
+using tests::MieAmplitudes;
+using tests::sum_amplitudes;
 
 TEST(SphereScattering, EfficienciesAreThoseOfTheTable) {
     OPALINE_CLOUD_ROWS(rows, "mie");

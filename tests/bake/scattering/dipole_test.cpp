@@ -8,24 +8,16 @@
 
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/gauss_legendre.h"
-#include "tests/support/reference_table.h"
+#include "tests/bake/scattering/table_support.h"
 
 namespace opaline::bake {
 namespace {
 
+using tests::expect_rows;
 using tests::ReferenceRow;
 
 Dipole dipole_of(const ReferenceRow& row, DipoleKind kind) {
     return make_dipole(kind, row.number("sigma_s_prime"), row.number("sigma_a"), row.number("eta"));
-}
-
-// Checks all rows of `check` against value(row).
-template <class Value>
-void expect_rows(const char* check, Value&& value) {
-    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", check);
-    for (const auto& row : rows) {
-        EXPECT_NEAR(value(row), row.expected, row.tolerance()) << row.name();
-    }
 }
 
 TEST(Dipole, ProfilesAreThoseOfTheTable) {

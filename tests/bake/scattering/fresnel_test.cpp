@@ -5,51 +5,28 @@
 #include <cmath>
 
 #include "bake/scattering/gauss_legendre.h"
-#include "tests/support/reference_table.h"
+#include "tests/bake/scattering/table_support.h"
 
 namespace opaline::bake {
 namespace {
 
-TEST(Fresnel, TransmittanceIsThatOfTheTable) {
-    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "fresnel_T");
-    for (const auto& row : rows) {
-        EXPECT_NEAR(fresnel_transmittance(row.number("cos_i"), row.number("eta")), row.expected,
-                    row.tolerance())
-            << row.name();
-    }
-}
-
-TEST(Fresnel, RefractedCosineIsThatOfTheTable) {
-    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "refracted_cos");
-    for (const auto& row : rows) {
-        EXPECT_NEAR(refracted_cosine(row.number("cos_i"), row.number("eta")), row.expected,
-                    row.tolerance())
-            << row.name();
-    }
-}
-
-TEST(Fresnel, MomentsAreThoseOfTheTable) {
-    OPALINE_REFERENCE_ROWS(f_dr, "translucency.csv", "Fdr_exact");
-    OPALINE_REFERENCE_ROWS(c2, "translucency.csv", "C2x3_exact");
-    OPALINE_REFERENCE_ROWS(f_ext, "translucency.csv", "Fext_exact");
-    OPALINE_REFERENCE_ROWS(fit, "translucency.csv", "Fdr_fit");
-    for (const auto& row : f_dr) {
-        EXPECT_NEAR(fresnel_moments(row.number("eta")).diffuse_internal(), row.expected,
-                    row.tolerance())
-            << row.name();
-    }
-    for (const auto& row : c2) {
-        EXPECT_NEAR(3 * fresnel_moments(row.number("eta")).c2, row.expected, row.tolerance())
-            << row.name();
-    }
-    for (const auto& row : f_ext) {
-        EXPECT_NEAR(fresnel_moments(row.number("eta")).external, row.expected, row.tolerance())
-            << row.name();
-    }
-    for (const auto& row : fit) {
-        EXPECT_NEAR(fitted_diffuse_reflectance(row.number("eta")), row.expected, row.tolerance())
-            << row.name();
-    }
+TEST(Fresnel, SharesAnglesAndMomentsAreThoseOfTheTable) {
+    using Row = tests::ReferenceRow;
+    tests::expect_rows("fresnel_T", [](const Row& row) {
+        return fresnel_transmittance(row.number("cos_i"), row.number("eta"));
+    });
+    tests::expect_rows("refracted_cos", [](const Row& row) {
+        return refracted_cosine(row.number("cos_i"), row.number("eta"));
+    });
+    tests::expect_rows("Fdr_exact", [](const Row& row) {
+        return fresnel_moments(row.number("eta")).diffuse_internal();
+    });
+    tests::expect_rows("C2x3_exact",
+                       [](const Row& row) { return 3 * fresnel_moments(row.number("eta")).c2; });
+    tests::expect_rows("Fext_exact",
+                       [](const Row& row) { return fresnel_moments(row.number("eta")).external; });
+    tests::expect_rows(
+        "Fdr_fit", [](const Row& row) { return fitted_diffuse_reflectance(row.number("eta")); });
 }
 
 TEST(Fresnel, SameFromBothSidesOfTheBoundary) {

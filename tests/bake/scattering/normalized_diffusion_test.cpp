@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "tests/support/reference_table.h"
+#include "tests/bake/scattering/table_support.h"
 
 namespace opaline::bake {
 namespace {
@@ -18,29 +18,21 @@ DiffusionLength length_of(const tests::ReferenceRow& row) {
 }
 
 TEST(NormalizedDiffusion, ShapeProfileAndIntegralAreThoseOfTheTable) {
-    OPALINE_REFERENCE_ROWS(shapes, "translucency.csv", "nd_s");
-    OPALINE_REFERENCE_ROWS(profiles, "translucency.csv", "nd_R");
-    OPALINE_REFERENCE_ROWS(integrals, "translucency.csv", "nd_cdf");
-    for (const auto& row : shapes) {
-        EXPECT_NEAR(normalized_diffusion_shape(row.number("albedo"), length_of(row)), row.expected,
-                    row.tolerance())
-            << row.name();
-    }
-    const auto profile = [](const tests::ReferenceRow& row) {
+    using Row = tests::ReferenceRow;
+    const auto profile = [](const Row& row) {
         return make_normalized_diffusion(row.number("albedo"), row.number("mfp"), length_of(row));
     };
-    for (const auto& row : profiles) {
-        EXPECT_NEAR(eval_normalized_diffusion(profile(row), row.number("r")), row.expected,
-                    row.tolerance())
-            << row.name();
-    }
-    for (const auto& row : integrals) {
-        // The table's integral is of the profile with total 1.
+    tests::expect_rows("nd_s", [](const Row& row) {
+        return normalized_diffusion_shape(row.number("albedo"), length_of(row));
+    });
+    tests::expect_rows("nd_R", [&](const Row& row) {
+        return eval_normalized_diffusion(profile(row), row.number("r"));
+    });
+    // The table's integral is of the profile with total 1.
+    tests::expect_rows("nd_cdf", [&](const Row& row) {
         const auto p = profile(row);
-        EXPECT_NEAR(normalized_diffusion_within(p, row.number("r")) / p.albedo, row.expected,
-                    row.tolerance())
-            << row.name();
-    }
+        return normalized_diffusion_within(p, row.number("r")) / p.albedo;
+    });
 }
 
 TEST(NormalizedDiffusion, TotalIsTheAlbedo) {

@@ -8,9 +8,8 @@
 
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/phase.h"
-#include "formats/opal/spherical_harmonics.h"
 #include "tests/bake/scattering/phase_support.h"
-#include "tests/support/reference_table.h"
+#include "tests/bake/scattering/table_support.h"
 
 namespace opaline::bake {
 namespace {
@@ -24,22 +23,16 @@ using tests::table_of;
 using std::numbers::pi;
 
 TEST(PhaseSeries, HenyeyGreensteinErrorsAreThoseOfTheTable) {
-    OPALINE_REFERENCE_ROWS(relative, "translucency.csv", "hg_rms_rel");
-    OPALINE_REFERENCE_ROWS(absolute, "translucency.csv", "hg_rms_abs");
-    const auto series = [](const tests::ReferenceRow& row) {
+    using Row = tests::ReferenceRow;
+    const auto series = [](const Row& row) {
         const double degrees = std::ceil(std::sqrt(row.number("K")));
         return expand_henyey_greenstein(row.number("g"), static_cast<unsigned>(degrees));
     };
-    for (const auto& row : relative) {
-        EXPECT_NEAR(phase_rms_relative(series(row), static_cast<unsigned>(row.number("K"))),
-                    row.expected, row.tolerance())
-            << row.name();
-    }
-    for (const auto& row : absolute) {
-        EXPECT_NEAR(phase_rms(series(row), static_cast<unsigned>(row.number("K"))), row.expected,
-                    row.tolerance())
-            << row.name();
-    }
+    const auto terms = [](const Row& row) { return static_cast<unsigned>(row.number("K")); };
+    tests::expect_rows("hg_rms_rel",
+                       [&](const Row& row) { return phase_rms_relative(series(row), terms(row)); });
+    tests::expect_rows("hg_rms_abs",
+                       [&](const Row& row) { return phase_rms(series(row), terms(row)); });
 }
 
 // Every type against brute force: lambda_l = 2 pi int p P_l over the cosine.
@@ -130,49 +123,6 @@ TEST(PhaseSeries, FewestTermsThatMeetTheToleranceAreWholeDegrees) {
     EXPECT_EQ(chosen(hg(0.25), 0.012), 16u);
     EXPECT_EQ(chosen(hg(0.25), 0.01), 25u);
     EXPECT_EQ(chosen(hg(0.9), 0.01), 25u);  // no K meets the tolerance
-}
-
-// w_i toward the light and w_o toward the eye point away from the scattering point: unscattered
-// light has w_o = -w_i, and g > 0 makes that the brightest direction.
-TEST(PhaseSeries, HarmonicsOfForwardScatteringAreBrightestOppositeTheLight) {
-    const formats::Vec3 w_i{0.48f, -0.6f, 0.64f};
-    for (const double g : {0.5, -0.5}) {
-        const std::vector<double> weight = harmonic_weights(expand_phase(hg(g), 5), 25);
-        const PhaseSeries series = expand_phase(hg(g), 5);
-        std::array<float, 25> y_i{}, y_o{};
-        formats::eval_spherical_harmonics(w_i, y_i);
-        const auto value = [&](formats::Vec3 w_o) {
-            formats::eval_spherical_harmonics(w_o, y_o);
-            double sum = 0;
-            for (std::size_t k = 0; k < 25; ++k) {
-                sum += weight[k] * double(y_i[k]) * double(y_o[k]);
-            }
-            return sum;
-        };
-        const double ahead = value({-w_i.x, -w_i.y, -w_i.z}), back = value(w_i);
-        EXPECT_EQ(ahead > back, g > 0);
-        // The addition theorem turns the sum over orders into Legendre polynomials.
-        const formats::Vec3 w_o{0.6f, 0.8f, 0};
-        const double x = -double(formats::dot(w_i, w_o));
-        double expected = 0;
-        for (unsigned l = 0; l < 5; ++l) {
-            expected += (2 * l + 1) / (4 * pi) * series.lambda[l] * std::legendre(l, x);
-        }
-        EXPECT_NEAR(value(w_o), expected, 1e-6);  // harmonics are in single precision
-    }
-}
-
-// 4 terms of Henyey-Greenstein are (1 + 3 g cos) / (4 pi), below 0 for |g| > 1/3.
-TEST(PhaseSeries, TruncatedFunctionMayBeNegative) {
-    const std::vector<double> weight = harmonic_weights(expand_phase(hg(0.4), 2), 4);
-    const formats::Vec3 w{0, 0, 1};
-    std::array<float, 4> y{};
-    formats::eval_spherical_harmonics(w, y);
-    double sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-        sum += weight[k] * double(y[k]) * double(y[k]);
-    }
-    EXPECT_NEAR(sum, -0.2 / (4 * pi), 1e-7);
 }
 
 }  // namespace

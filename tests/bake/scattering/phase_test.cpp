@@ -6,18 +6,16 @@
 #include <numbers>
 
 #include "bake/scattering/gauss_legendre.h"
+#include "tests/bake/scattering/table_support.h"
 #include "tests/support/volume_table.h"
 
 namespace opaline::bake {
 namespace {
 
 TEST(HenyeyGreenstein, ValuesAreThoseOfTheTable) {
-    OPALINE_REFERENCE_ROWS(rows, "translucency.csv", "hg");
-    for (const auto& row : rows) {
-        EXPECT_NEAR(henyey_greenstein(row.number("cos"), row.number("g")), row.expected,
-                    row.tolerance())
-            << row.name();
-    }
+    tests::expect_rows("hg", [](const tests::ReferenceRow& row) {
+        return henyey_greenstein(row.number("cos"), row.number("g"));
+    });
 }
 
 // Over theta = pi x^4, which spreads the forward peak.

@@ -7,11 +7,30 @@
 #include <vector>
 
 #include "bake/scattering/gauss_legendre.h"
+#include "bake/scattering/phase.h"
+#include "bake/scattering/phase_series.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/support/volume_table.h"
 
 namespace opaline::bake {
 namespace {
+
+// Density [1/sr] over directions of light that was scattered at least once: the first order is that
+// of `density`, exactly.
+double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, double ell,
+                       double cosine) {
+    if (!(ell > 0)) {
+        return eval_phase(density, cosine);
+    }
+    // Of those scattered at all, the share that is scattered once: its series converges slowest.
+    const double once = ell * std::exp(-ell) / -std::expm1(-ell);
+    std::vector<double> rest;
+    rest.reserve(series.lambda.size());
+    for (const double lambda : series.lambda) {
+        rest.push_back(moment_after_many(lambda, ell) - once * lambda);
+    }
+    return once * eval_phase(density, cosine) + eval_zonal(rest, cosine);
+}
 
 using std::numbers::pi;
 
