@@ -140,34 +140,26 @@ TEST(InspectScene, ConvexityAgreesWithAllPairsOfPoints) {
     EXPECT_GT(other, 2);
 }
 
-TEST(InspectScene, AStarThatNearlyIsABallIsNotConvex) {
-    EXPECT_TRUE(is_convex(star(0, 4)));
-    EXPECT_FALSE(is_convex(star(0.06, 4)));
-}
-
-TEST(InspectScene, ARollBendsOneWayEverywhereAndStillIsNotConvex) {
-    EXPECT_TRUE(is_convex(roll(0.25)));
-    EXPECT_FALSE(is_convex(roll(2)));
-}
-
-TEST(InspectScene, FlatFacesWithRoundedCoordinatesAreConvex) {
-    // Turned and moved, no four points of a side are in a plane any more.
-    const Primitive p = transformed(make_cube(40, false), some_rotation(), 0.37f, {3, -2, 5});
-    EXPECT_TRUE(is_convex(p));
-    EXPECT_TRUE(inspect_scene(make_scene({p})).is_open());
-}
-
-TEST(InspectScene, ABodyTurnedInsideOutIsAsConvex) {
-    EXPECT_TRUE(is_convex(make_cube(3, true)));
-}
-
 // Shallow everywhere, but wide: each edge folds by little, all of them by much.
-TEST(InspectScene, AShallowBowlIsNotConvex) {
+Primitive bowl() {
     Primitive p = make_sphere(5);
     for (glm::vec3& x : p.position) {
         x.y *= 0.2f + 0.8f * std::min(1.0f, 1.2f * (x.x * x.x + x.z * x.z));
     }
-    EXPECT_FALSE(is_convex(p));
+    return p;
+}
+
+TEST(InspectScene, ConvexBodiesAreToldFromOthers) {
+    EXPECT_TRUE(is_convex(star(0, 4)));
+    EXPECT_FALSE(is_convex(star(0.06, 4))) << "nearly a ball";
+    EXPECT_TRUE(is_convex(roll(0.25)));
+    EXPECT_FALSE(is_convex(roll(2))) << "bends one way everywhere";
+    EXPECT_TRUE(is_convex(make_cube(3, true))) << "inside out";
+    EXPECT_FALSE(is_convex(bowl()));
+    // Turned and moved, no four points of a side are in a plane any more.
+    const Primitive p = transformed(make_cube(40, false), some_rotation(), 0.37f, {3, -2, 5});
+    EXPECT_TRUE(is_convex(p));
+    EXPECT_TRUE(inspect_scene(make_scene({p})).is_open());
 }
 
 TEST(InspectScene, NothingStandsAboveTheHorizonsOfAConvexBodyAlone) {

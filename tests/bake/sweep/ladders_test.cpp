@@ -203,25 +203,19 @@ TEST(Ladders, TruthsGetCheaperOneByOne) {
     }
 }
 
-TEST(Ladders, KnobsOfMediaDoNotTellOpaqueBakesApart) {
+TEST(Ladders, KnobsOfMediaTellBakesOfMediaApartAndNoOthers) {
     const Knobs a = *resolve_knobs({});
-    Knobs b = a;
-    b.set(kSamples, 1000);
-    b.set(kDepthSamples, 1);
-    b.exact_rays = true;
-    EXPECT_TRUE(same_bake(a, b, kOpaque));
-    EXPECT_FALSE(same_bake(a, b, kMarble));
-    b = a;
-    b.coefficients = 7;
-    EXPECT_FALSE(same_bake(a, b, kOpaque));
-}
-
-TEST(Ladders, SamplesPerPathTellBakesApart) {
-    const Knobs a = *resolve_knobs({});
-    Knobs b = a;
-    b.set(kSamplesPerPath, 4 * a[kSamplesPerPath]);
-    EXPECT_FALSE(same_bake(a, b, kMarble));
-    EXPECT_TRUE(same_bake(a, b, kOpaque));
+    Knobs fewer = a, per_path = a, coefficients = a;
+    fewer.set(kSamples, 1000);
+    fewer.set(kDepthSamples, 1);
+    fewer.exact_rays = true;
+    per_path.set(kSamplesPerPath, 4 * a[kSamplesPerPath]);
+    for (const Knobs& b : {fewer, per_path}) {
+        EXPECT_TRUE(same_bake(a, b, kOpaque));
+        EXPECT_FALSE(same_bake(a, b, kMarble));
+    }
+    coefficients.coefficients = 7;
+    EXPECT_FALSE(same_bake(a, coefficients, kOpaque));
 }
 
 }  // namespace
