@@ -5,6 +5,7 @@
 #include <initializer_list>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,9 @@ struct Fields {
     gltf::Report& report;
 };
 
+/// "a, b, c".
+std::string listed(std::span<const std::string_view> names);
+
 /// The place of a member: "materials > Wax > sigma_a". Names lose their control characters.
 std::string place(const std::string& where, std::string_view key);
 
@@ -36,6 +40,7 @@ void refuse_unknown_keys(const Fields& fields, std::initializer_list<std::string
 /// Absent members give nothing; so do faulty ones, and then the report has an error. Bounds are
 /// inclusive.
 std::optional<double> number(const Fields& fields, const char* key, double least, double greatest);
+void number(const Fields& fields, const char* key, double least, double greatest, float& value);
 /// A whole number.
 std::optional<std::uint32_t> count(const Fields& fields, const char* key, std::uint32_t least,
                                    std::uint32_t greatest);
@@ -52,11 +57,17 @@ std::optional<std::string> text(const Fields& fields, const char* key);
 std::optional<std::vector<std::string>> texts(const Fields& fields, const char* key,
                                               std::size_t most);
 std::optional<bool> truth(const Fields& fields, const char* key);
+/// A member that is an object; `example` is the remedy where it is something else.
+std::optional<Fields> object_in(const Fields& fields, const char* key, const char* example);
 /// The bytes of the file that a text names, see read_inside.
 std::optional<gltf::Bytes> read_named_file(const Fields& fields, const char* key,
                                            gltf::Resources& resources);
 /// The position of a text among `names`.
 std::optional<std::size_t> choice(const Fields& fields, const char* key,
                                   std::initializer_list<std::string_view> names);
+/// Whether `fidelity` is "paper".
+bool is_paper(const Fields& fields);
+/// What coefficients in the `unit` are multiplied with: 1000 for "1/mm", the default.
+double per_metre(const Fields& fields);
 
 }  // namespace opaline::formats::media

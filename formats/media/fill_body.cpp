@@ -301,20 +301,19 @@ Result<FilledBody> fill_body(const Scene& scene, const std::string& material, st
     const auto refuse = [&](std::string fault, std::string remedy) {
         return make_error(ErrorKind::bad_input, file, where, std::move(fault), std::move(remedy));
     };
+    const std::string quoted = gltf::in_quotes(material), mesh = "the mesh of material " + quoted;
     const auto own = std::ranges::find(scene.materials, material, &Material::name);
     const Body body = gather_body(scene, material);
     if (own == scene.materials.end() || body.triangle.empty()) {
-        return refuse("the scene has no surface of material " + gltf::in_quotes(material),
+        return refuse("the scene has no surface of material " + quoted,
                       "name the material of a closed mesh");
     }
     if (!own->medium || own->medium->variation || own->medium->thickness > 0) {
-        return refuse(
-            "material " + gltf::in_quotes(material) + " has no medium that is alike everywhere",
-            "give it sigma_s and sigma_a, or a preset, under materials");
+        return refuse("material " + quoted + " has no medium that is alike everywhere",
+                      "give it sigma_s and sigma_a, or a preset, under materials");
     }
     if (const std::size_t open = count_open_edges(body); open > 0) {
-        return refuse("the mesh of material " + gltf::in_quotes(material) +
-                          " is not closed: " + std::to_string(open) +
+        return refuse(mesh + " is not closed: " + std::to_string(open) +
                           " edges have no triangle on their other side, or one that faces the "
                           "other way",
                       "close it, weld its vertices, and turn all triangles outward");
@@ -322,27 +321,24 @@ Result<FilledBody> fill_body(const Scene& scene, const std::string& material, st
     const glm::dvec3 farthest =
         glm::max(glm::abs(scene.origin + body.low), glm::abs(scene.origin + body.high));
     if (!(std::max({farthest.x, farthest.y, farthest.z}) <= media::kMaxVolumeCoordinate)) {
-        return refuse("the mesh of material " + gltf::in_quotes(material) +
-                          " reaches beyond 1e9 m from the origin",
+        return refuse(mesh + " reaches beyond 1e9 m from the origin",
                       "check its transform and --metres-per-unit");
     }
     const Lines lines = lines_of(body, voxels);
     // A crossing takes 16 bytes; at most every second meeting is one.
     constexpr double kMostMeetings = 1 << 26;
     if (lines.voxel > 0 && !(count_meetings(body, lines) <= kMostMeetings)) {
-        return refuse("the mesh of material " + gltf::in_quotes(material) +
-                          " has too many large triangles, one above the other",
+        return refuse(mesh + " has too many large triangles, one above the other",
                       "lower voxels, or join parts that overlap");
     }
     const Medium& medium = *own->medium;
     Volume volume;
-    volume.name = "volume of material " + gltf::in_quotes(material);
+    volume.name = "volume of material " + quoted;
     const std::vector<std::size_t> part = number_parts(body);
     std::vector<PartContent> content(body.triangle.size());
     volume.density = fill_voxels(body, lines, part, content);
     if (volume.density.empty()) {
-        return refuse("the mesh of material " + gltf::in_quotes(material) +
-                          " has no inside, or one that is thinner than an eighth of a voxel",
+        return refuse(mesh + " has no inside, or one that is thinner than an eighth of a voxel",
                       "give it a thickness, turn all parts outward, or give parts that lie far "
                       "apart materials of their own");
     }
@@ -350,9 +346,9 @@ Result<FilledBody> fill_body(const Scene& scene, const std::string& material, st
     const double depth = static_cast<double>(largest_of(volume.sigma_t)) *
                          glm::length(glm::dvec3(volume.density.to_scene[0]));
     if (!(depth <= media::kMaxVoxelDepth)) {
-        return refuse("a voxel of material " + gltf::in_quotes(material) +
-                          " holds more than a million mean free paths",
-                      "leave it a body with a surface");
+        return refuse(
+            "a voxel of material " + quoted + " holds more than a million mean free paths",
+            "leave it a body with a surface");
     }
     const auto share = [](float s, float t) { return t > 0 ? std::min(s / t, 1.0f) : 0.0f; };
     volume.albedo = {share(medium.sigma_s.r, volume.sigma_t.r),

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "formats/fill_grid.h"
 #include "formats/gltf/report.h"
 #include "formats/media/limits.h"
 #include "formats/media/resampler.h"
@@ -34,38 +35,23 @@ float largest_of(const VdbGrid& grid) {
     return most;
 }
 
-// Density times albedo at each voxel of a brick of the density.
-void scatter_brick(const SparseGrid<float>& density, glm::ivec3 brick, const Resampler& albedo,
-                   AlbedoRange& range, Albedos& scattering) {
-    constexpr int kEdge = Albedos::kSide;
-    const std::size_t first = density.brick_at(brick) * Albedos::kBrickVoxels;
-    for (std::size_t i = 0; i < Albedos::kBrickVoxels; ++i) {
-        const float here = density.value[first + i];
-        if (!(here > 0)) continue;
-        const auto n = static_cast<int>(i);
-        const glm::ivec3 in_brick(n % kEdge, n / kEdge % kEdge, n / (kEdge * kEdge));
-        const glm::vec3 own = glm::min(albedo.at(kEdge * brick + in_brick), 1.0f);
-        range.include(own);
-        scattering.value[first + i] = here * own;
-    }
-}
-
+// Density times albedo at each voxel.
 Albedos scatter(const SparseGrid<float>& density, const Resampler& albedo, AlbedoRange& range) {
     Albedos scattering;
     scattering.first_brick = density.first_brick;
     scattering.extent = density.extent;
     scattering.table = density.table;
     scattering.value.resize(density.value.size());
-    glm::ivec3 b;
-    for (b.z = 0; b.z < density.extent.z; ++b.z) {
-        for (b.y = 0; b.y < density.extent.y; ++b.y) {
-            for (b.x = 0; b.x < density.extent.x; ++b.x) {
-                if (density.brick_at(density.first_brick + b) != Albedos::kEmpty) {
-                    scatter_brick(density, density.first_brick + b, albedo, range, scattering);
-                }
-            }
+    for_bricks(density.first_brick, density.extent, [&](glm::ivec3 brick) {
+        const std::uint32_t number = density.brick_at(brick);
+        for (std::size_t i = 0; number != Albedos::kEmpty && i < Albedos::kBrickVoxels; ++i) {
+            const std::size_t at = number * Albedos::kBrickVoxels + i;
+            if (!(density.value[at] > 0)) continue;
+            const glm::vec3 own = glm::min(albedo.at(voxel_of(brick, static_cast<int>(i))), 1.0f);
+            range.include(own);
+            scattering.value[at] = density.value[at] * own;
         }
-    }
+    });
     return scattering;
 }
 

@@ -1,11 +1,11 @@
 #include "formats/media/load_emission.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "formats/fill_grid.h"
 #include "formats/gltf/report.h"
 #include "formats/media/black_body.h"
 #include "formats/media/limits.h"
@@ -18,7 +18,6 @@ namespace {
 using gltf::in_quotes;
 using Color = glm::vec3;
 using Emission = SparseGrid<Color>;
-constexpr int kSide = Emission::kSide;
 
 // Bricks along each axis: `low` and what follows.
 struct BrickBox {
@@ -45,14 +44,8 @@ template <class T>
 void widen(SparseGrid<T>& grid, const BrickBox& box) {
     std::vector<std::uint32_t> table;
     table.reserve(box.cells());
-    glm::ivec3 b;
-    for (b.z = 0; b.z < box.extent.z; ++b.z) {
-        for (b.y = 0; b.y < box.extent.y; ++b.y) {
-            for (b.x = 0; b.x < box.extent.x; ++b.x) {
-                table.push_back(grid.brick_at(box.low + b));
-            }
-        }
-    }
+    for_bricks(box.low, box.extent,
+               [&](glm::ivec3 brick) { table.push_back(grid.brick_at(brick)); });
     grid.first_brick = box.low;
     grid.extent = box.extent;
     grid.table = std::move(table);
@@ -65,32 +58,17 @@ Emission fill_bricks(const BrickBox& box, MayGlow&& may_glow, Value&& value) {
     grid.first_brick = box.low;
     grid.extent = box.extent;
     grid.table.reserve(box.cells());
-    std::vector<Color> brick(Emission::kBrickVoxels);
-    glm::ivec3 b;
-    for (b.z = 0; b.z < box.extent.z; ++b.z) {
-        for (b.y = 0; b.y < box.extent.y; ++b.y) {
-            for (b.x = 0; b.x < box.extent.x; ++b.x) {
-                bool is_dark = true;
-                if (!may_glow(box.low + b)) {
-                    grid.table.push_back(Emission::kEmpty);
-                    continue;
-                }
-                for (int i = 0; i < static_cast<int>(brick.size()); ++i) {
-                    const glm::ivec3 at =
-                        kSide * (box.low + b) +
-                        glm::ivec3(i % kSide, i / kSide % kSide, i / (kSide * kSide));
-                    Color& voxel = brick[static_cast<std::size_t>(i)];
-                    voxel = value(at);
-                    is_dark = is_dark && voxel == Color(0);
-                }
-                grid.table.push_back(is_dark ? Emission::kEmpty
-                                             : static_cast<std::uint32_t>(grid.brick_count()));
-                if (!is_dark) {
-                    grid.value.insert(grid.value.end(), brick.begin(), brick.end());
-                }
-            }
+    std::vector<Color> values(Emission::kBrickVoxels);
+    for_bricks(box.low, box.extent, [&](glm::ivec3 brick) {
+        if (!may_glow(brick)) {
+            grid.table.push_back(Emission::kEmpty);
+            return;
         }
-    }
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            values[i] = value(voxel_of(brick, static_cast<int>(i)));
+        }
+        append_brick(values, grid);
+    });
     return grid;
 }
 

@@ -1,7 +1,6 @@
 #include "formats/media/load_volumes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -280,8 +279,7 @@ Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaF
         hash.add(*bytes);
         scene.sha256 = hash.finish();
     } catch (const std::bad_alloc&) {
-        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
-                          "make it smaller");
+        return report.take_exception("make it smaller", "");
     }
     auto loaded = load_all(media, entries, path, metres_per_unit, scene, reader);
     if (!loaded) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <utility>
 
 #include "formats/gltf/decode_image8.h"
 #include "formats/image/srgb.h"
@@ -23,7 +22,7 @@ void read_droplets(const Fields& fields, CloudLayer& layer) {
                                  .value_or(layer.effective_radius);
     layer.gamma = number(fields, "gamma", kMinDropletGamma, kMaxDropletGamma).value_or(layer.gamma);
     layer.ice = choice(fields, "substance", {"water", "ice"}).value_or(0) == 1;
-    layer.paper = choice(fields, "fidelity", {"physical", "paper"}).value_or(0) == 1;
+    layer.paper = is_paper(fields);
     // <r^3> = r_e <r^2>, <r^2> = gamma (gamma + 1) r_n^2, r_n = r_e / (gamma + 2).
     const double cube = std::pow(layer.effective_radius, 3) * layer.gamma * (layer.gamma + 1) /
                         ((layer.gamma + 2) * (layer.gamma + 2));
@@ -97,10 +96,10 @@ std::optional<CloudEntry> read_cloud(const nlohmann::json& entry, std::size_t in
                                      const std::string& where, gltf::Resources& resources,
                                      gltf::Report& report) {
     if (!entry.is_object()) {
-        report.error(where, "it is not an object",
-                     "give an object such as {\"procedural\": {\"type\": \"cellular\"}, \"base\": "
-                     "1000}");
-        return std::nullopt;
+        return report.fail(
+            where, "it is not an object",
+            "give an object such as {\"procedural\": {\"type\": \"cellular\"}, \"base\": "
+            "1000}");
     }
     const Fields fields{entry, where, report};
     refuse_unknown_keys(

@@ -47,12 +47,10 @@ std::optional<ScalarImage> read_picture(const std::string& name, const std::stri
     auto image = decode_exr_channel(*bytes, where, {"Y", "R"}, kMaxFieldSide);
     if (!image) {
         const Diagnostic& fault = image.error().diagnostics.front();
-        report.error(where, fault.fault, fault.remedy);
-        return std::nullopt;
+        return report.fail(where, fault.fault, fault.remedy);
     }
     if (std::min(image->width, image->height) < kMinFieldSide) {
-        report.error(where, "it has only one texel on a side", "give 2 or more");
-        return std::nullopt;
+        return report.fail(where, "it has only one texel on a side", "give 2 or more");
     }
     if (!scale_thickness(report, where, *image, metres)) {
         return std::nullopt;

@@ -18,22 +18,15 @@ const std::vector<Rgb>& default_colors() {
 }  // namespace
 
 std::optional<PlacedMarble> read_marble(const Fields& material) {
-    const auto found = material.object.find("marble");
-    if (found == material.object.end()) {
+    const auto found = object_in(material, "marble", "give an object such as {\"scale\": 0.04}");
+    if (!found) {
         return std::nullopt;
     }
-    const std::string where = place(material.where, "marble");
-    if (!found->is_object()) {
-        material.report.error(where, "it is not an object",
-                              "give an object such as {\"scale\": 0.04}");
-        return std::nullopt;
-    }
-    const Fields fields{*found, where, material.report};
+    const Fields& fields = *found;
     refuse_unknown_keys(fields, {"scale", "colors", "inside"});
     PlacedMarble placed;
     Marble& marble = placed.marble;
-    marble.scale = static_cast<float>(number(fields, "scale", kMinMarbleScale, kMaxMarbleScale)
-                                          .value_or(static_cast<double>(marble.scale)));
+    number(fields, "scale", kMinMarbleScale, kMaxMarbleScale, marble.scale);
     marble.colors =
         rgb_list(fields, "colors", 2, kMaxMarbleColors, 0, 1).value_or(default_colors());
     placed.is_inside = truth(fields, "inside").value_or(false);

@@ -1,6 +1,5 @@
 #include "formats/media/read_material.h"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -20,14 +19,6 @@ namespace {
 using gltf::in_quotes;
 using gltf::Report;
 
-std::string preset_list() {
-    std::string list;
-    for (const std::string_view name : media_preset_names()) {
-        list += (list.empty() ? "" : ", ") + std::string(name);
-    }
-    return list;
-}
-
 bool is_black(Rgb c) {
     return c == Rgb{};
 }
@@ -35,17 +26,14 @@ bool is_black(Rgb c) {
 /// The image that a key names.
 std::optional<Image8> read_image(const Fields& fields, const char* key,
                                  gltf::Resources& resources) {
-    const auto name = text(fields, key);
-    const std::string where = place(fields.where, key);
-    const auto bytes =
-        name ? gltf::read_inside(resources, *name, where, fields.report) : std::nullopt;
+    const auto bytes = read_named_file(fields, key, resources);
     if (!bytes) {
         return std::nullopt;
     }
     gltf::DecodedImage8 decoded = gltf::decode_image8(*bytes);
     if (!decoded.fault.empty()) {
-        fields.report.error(where, decoded.fault, "save the texture again as 8-bit PNG or JPEG");
-        return std::nullopt;
+        return fields.report.fail(place(fields.where, key), decoded.fault,
+                                  "save the texture again as 8-bit PNG or JPEG");
     }
     return std::move(decoded.image);
 }
@@ -73,7 +61,7 @@ bool read_coefficients(const Fields& fields, Medium& medium) {
             medium = *preset;
         } else {
             report.error(place(fields.where, "preset"), "there is no preset " + in_quotes(*name),
-                         "known are: " + preset_list());
+                         "known are: " + listed(media_preset_names()));
         }
     }
     if (has(fields, "preset")) {
@@ -88,11 +76,10 @@ bool read_coefficients(const Fields& fields, Medium& medium) {
         report.error(fields.where, "sigma_a is missing",
                      "give absorption, [0, 0, 0] where there is none");
     }
-    const double per_metre = choice(fields, "unit", {"1/mm", "1/m"}).value_or(0) == 0 ? 1000 : 1;
-    const double most = kMaxCoefficientPerM / per_metre;
+    const double scale = per_metre(fields), most = kMaxCoefficientPerM / scale;
     medium.sigma_s =
-        rgb(fields, reduced ? "sigma_s_prime" : "sigma_s", 0, most, per_metre).value_or(Rgb{});
-    medium.sigma_a = rgb(fields, "sigma_a", 0, most, per_metre).value_or(Rgb{});
+        rgb(fields, reduced ? "sigma_s_prime" : "sigma_s", 0, most, scale).value_or(Rgb{});
+    medium.sigma_a = rgb(fields, "sigma_a", 0, most, scale).value_or(Rgb{});
     if (!report.failed() && is_black(medium.sigma_s) && is_black(medium.sigma_a)) {
         report.error(fields.where, "scattering and absorption are zero in every channel",
                      "give a coefficient above 0, or \"opaque\": true");
@@ -103,30 +90,20 @@ bool read_coefficients(const Fields& fields, Medium& medium) {
 std::optional<Medium> read_medium(const Fields& fields, gltf::Resources& resources) {
     Medium medium;
     const bool reduced = read_coefficients(fields, medium);
-    if (const auto phase = fields.object.find("phase"); phase != fields.object.end()) {
-        const std::string where = place(fields.where, "phase");
-        if (phase->is_object()) {
-            medium.phase =
-                read_phase({*phase, where, fields.report}, resources).value_or(PhaseFunction{});
-        } else {
-            fields.report.error(where, "it is not an object",
-                                "give an object such as {\"type\": \"hg\", \"g\": 0.3}");
-        }
+    if (const auto phase =
+            object_in(fields, "phase", "give an object such as {\"type\": \"hg\", \"g\": 0.3}")) {
+        medium.phase = read_phase(*phase, resources).value_or(PhaseFunction{});
     }
     if (reduced) {
         medium.sigma_s = static_cast<float>(1 / (1 - mean_cosine(medium.phase))) * medium.sigma_s;
     }
-    medium.eta = static_cast<float>(
-        number(fields, "eta", kMinEta, kMaxEta).value_or(static_cast<double>(medium.eta)));
-    medium.roughness = static_cast<float>(
-        number(fields, "roughness", 0, 1).value_or(static_cast<double>(medium.roughness)));
-    medium.thickness =
-        static_cast<float>(number(fields, "thickness", kMinThickness, kMaxThickness).value_or(0));
+    number(fields, "eta", kMinEta, kMaxEta, medium.eta);
+    number(fields, "roughness", 0, 1, medium.roughness);
+    number(fields, "thickness", kMinThickness, kMaxThickness, medium.thickness);
     medium.profile = static_cast<Medium::Profile>(
         choice(fields, "profile", {"auto", "classic", "better", "beams", "normalized"})
             .value_or(0));
-    medium.fidelity = static_cast<Medium::Fidelity>(
-        choice(fields, "fidelity", {"physical", "paper"}).value_or(0));
+    medium.fidelity = is_paper(fields) ? Medium::Fidelity::paper : Medium::Fidelity::physical;
     return medium;
 }
 
@@ -189,19 +166,15 @@ MaterialMedium read_material(const std::string& name, const nlohmann::json& entr
         material.marble = marble->marble;
     }
     material.sheet = read_sheet(fields);
-    if (has(fields, "thin_walled")) {
+    const bool is_thin = has(fields, "thin_walled");
+    if (is_thin || truth(fields, "opaque").value_or(false)) {
+        const char* const key = is_thin ? "thin_walled" : "opaque";
         refuse_beside(
-            fields, "thin_walled",
-            {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta", "roughness",
-             "profile", "fidelity", "opaque", "thickness", "scatter_texture", "density_texture"},
-            "give a medium or thin_walled");
-        refuse_veins_inside(fields, marble);
-    } else if (truth(fields, "opaque").value_or(false)) {
-        refuse_beside(
-            fields, "opaque",
+            fields, key,
             {"preset", "sigma_s", "sigma_s_prime", "sigma_a", "unit", "phase", "eta", "roughness",
              "profile", "fidelity", "thickness", "scatter_texture", "density_texture"},
-            "give a medium or \"opaque\": true");
+            is_thin ? "give a medium or thin_walled" : "give a medium or \"opaque\": true");
+        refuse_beside(fields, "thin_walled", {"opaque"}, "give a medium or thin_walled");
         refuse_veins_inside(fields, marble);
     } else {
         material.medium = read_medium(fields, resources);

@@ -1,7 +1,6 @@
 #include "formats/media/read_media.h"
 
 #include <exception>
-#include <new>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
@@ -53,9 +52,8 @@ std::optional<Json> parse_strict(std::string_view text, Report& report) {
         Json root = Json::parse(text, refuse_twice(open, report));
         return report.failed() ? std::nullopt : std::optional(std::move(root));
     } catch (const Json::exception& problem) {
-        report.error("JSON", "it cannot be parsed " + gltf::json_fault(problem.what()),
-                     "correct it where the message says");
-        return std::nullopt;
+        return report.fail("JSON", "it cannot be parsed " + gltf::json_fault(problem.what()),
+                           "correct it where the message says");
     }
 }
 
@@ -163,13 +161,8 @@ Result<MediaFile> guarded(const std::filesystem::path& path,
         media.inputs = std::move(resources.inputs);
         media.sha256 = resources.hash.finish();
         return media;
-    } catch (const std::bad_alloc&) {
-        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
-                          "make it smaller");
-    } catch (const std::exception& problem) {
-        return make_error(ErrorKind::bad_input, report.file, "",
-                          "it cannot be read: " + gltf::json_fault(problem.what()),
-                          "correct the file");
+    } catch (const std::exception&) {
+        return report.take_exception("make it smaller", "correct the file");
     }
 }
 

@@ -78,19 +78,17 @@ std::optional<std::vector<Row>> read_rows(std::string_view text, const std::stri
         }
         may_be_heading = false;
         if (!row || row->value < 0 || row->value > kMaxTableValue) {
-            report.error(at, "it is " + in_quotes(line) + ", expected a cosine and a value >= 0",
-                         kRemedy);
-            return std::nullopt;
+            return report.fail(
+                at, "it is " + in_quotes(line) + ", expected a cosine and a value >= 0", kRemedy);
         }
         if (rows.size() == kMaxTableRows) {
-            report.error(where, "it has more than " + std::to_string(kMaxTableRows) + " rows",
-                         "give fewer rows");
-            return std::nullopt;
+            return report.fail(where, "it has more than " + std::to_string(kMaxTableRows) + " rows",
+                               "give fewer rows");
         }
         if (!rows.empty() &&
             !(static_cast<float>(row->cosine) > static_cast<float>(rows.back().cosine))) {
-            report.error(at, "the cosine " + in_quotes(words[0]) + " does not ascend", kRemedy);
-            return std::nullopt;
+            return report.fail(at, "the cosine " + in_quotes(words[0]) + " does not ascend",
+                               kRemedy);
         }
         rows.push_back(*row);
     }
@@ -108,8 +106,7 @@ std::optional<PhaseFunction> parse_phase_table(std::string_view text, const std:
     constexpr double kRounding = 1e-6;  // of an end written with few digits
     if (rows->size() < 2 || std::abs(rows->front().cosine + 1) > kRounding ||
         std::abs(rows->back().cosine - 1) > kRounding) {
-        report.error(where, "its cosines do not reach from -1 to 1", kRemedy);
-        return std::nullopt;
+        return report.fail(where, "its cosines do not reach from -1 to 1", kRemedy);
     }
     rows->front().cosine = -1;
     rows->back().cosine = 1;
@@ -120,8 +117,7 @@ std::optional<PhaseFunction> parse_phase_table(std::string_view text, const std:
     }
     const double integral = 2 * std::numbers::pi * sum;
     if (!(integral > kMinTableIntegral)) {
-        report.error(where, "its values are all zero", kRemedy);
-        return std::nullopt;
+        return report.fail(where, "its values are all zero", kRemedy);
     }
     PhaseFunction phase;
     phase.type = PhaseFunction::Type::tabulated;
@@ -130,11 +126,10 @@ std::optional<PhaseFunction> parse_phase_table(std::string_view text, const std:
         phase.value.push_back(static_cast<float>(row.value / integral));
     }
     if (const double g = mean_cosine(phase); !(std::abs(g) <= kMaxMeanCosine)) {
-        report.error(
+        return report.fail(
             where,
             "its mean cosine is " + nlohmann::json(g).dump() + ", expected one from -0.99 to 0.99",
             "leave out the forward peak and reduce sigma_s by its share");
-        return std::nullopt;
     }
     return phase;
 }
@@ -142,9 +137,8 @@ std::optional<PhaseFunction> parse_phase_table(std::string_view text, const std:
 std::optional<PhaseFunction> read_phase(const Fields& fields, gltf::Resources& resources) {
     PhaseFunction phase;
     if (!has(fields, "type")) {
-        fields.report.error(fields.where, "type is missing",
-                            "give isotropic, hg, rayleigh, gaussian or table");
-        return std::nullopt;
+        return fields.report.fail(fields.where, "type is missing",
+                                  "give isotropic, hg, rayleigh, gaussian or table");
     }
     const auto type = choice(fields, "type", {"isotropic", "hg", "rayleigh", "gaussian", "table"});
     if (!type) {
@@ -160,29 +154,25 @@ std::optional<PhaseFunction> read_phase(const Fields& fields, gltf::Resources& r
             phase.type = PhaseFunction::Type::henyey_greenstein;
             refuse_unknown_keys(fields, {"type", "g"});
             needs("g", "give the mean cosine, from -0.99 to 0.99");
-            phase.g = static_cast<float>(
-                number(fields, "g", -kMaxMeanCosine, kMaxMeanCosine).value_or(0));
+            number(fields, "g", -kMaxMeanCosine, kMaxMeanCosine, phase.g);
             return phase;
         case 3:
             phase.type = PhaseFunction::Type::gaussian;
             refuse_unknown_keys(fields, {"type", "rms_angle"});
             needs("rms_angle", "give the root mean square angle in radians, at most 1");
-            phase.rms_angle =
-                static_cast<float>(number(fields, "rms_angle", kMinRmsAngle, 1.0).value_or(1));
+            phase.rms_angle = 1;
+            number(fields, "rms_angle", kMinRmsAngle, 1.0, phase.rms_angle);
             return phase;
         case 4: {
             refuse_unknown_keys(fields, {"type", "file"});
             needs("file", "give the name of a table beside this file");
-            const std::string where = place(fields.where, "file");
-            const auto name = text(fields, "file");
-            const auto bytes =
-                name ? read_inside(resources, *name, where, fields.report) : std::nullopt;
+            const auto bytes = read_named_file(fields, "file", resources);
             if (!bytes) {
                 return std::nullopt;
             }
             const std::string_view table(reinterpret_cast<const char*>(bytes->data()),
                                          bytes->size());
-            return parse_phase_table(table, where, fields.report);
+            return parse_phase_table(table, place(fields.where, "file"), fields.report);
         }
         default:
             phase.type =

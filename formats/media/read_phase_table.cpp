@@ -25,8 +25,7 @@ Result<PhaseFunction> read_phase_table(const std::filesystem::path& path) {
         }
         return std::move(*phase);
     } catch (const std::bad_alloc&) {
-        return make_error(ErrorKind::resource, report.file, "", "it does not fit into memory",
-                          "make it smaller");
+        return report.take_exception("make it smaller", "");
     }
 }
 

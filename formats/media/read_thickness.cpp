@@ -1,9 +1,7 @@
 #include "formats/media/read_thickness.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
-#include <utility>
 
 #include "formats/media/limits.h"
 #include "formats/media/read_height_field.h"
@@ -58,14 +56,9 @@ std::optional<HeightFieldShape> read_shape(const Fields& fields, CloudLayer& lay
             "give a larger scale, a higher resolution, or a smaller size with "
             "\"repeat\": true");
     }
-    if (const auto evolution = fields.object.find("evolution"); evolution != fields.object.end()) {
-        const std::string where = place(fields.where, "evolution");
-        if (evolution->is_object()) {
-            read_evolution({*evolution, where, fields.report}, shape, layer);
-        } else {
-            fields.report.error(where, "it is not an object",
-                                "give an object such as {\"period\": 3600}");
-        }
+    if (const auto evolution =
+            object_in(fields, "evolution", "give an object such as {\"period\": 3600}")) {
+        read_evolution(*evolution, shape, layer);
     }
     return shape;
 }
@@ -85,14 +78,10 @@ void read_thickness(const Fields& fields, gltf::Resources& resources, CloudEntry
         }
     }
     const auto thickness = number(fields, "thickness", kMinLayerThickness, kMaxLayerThickness);
-    const auto formula = fields.object.find("procedural");
-    if (formula != fields.object.end()) {
-        const std::string where = place(fields.where, "procedural");
-        if (formula->is_object()) {
-            cloud.shape = read_shape({*formula, where, fields.report}, cloud.layer);
-        } else {
-            fields.report.error(where, "it is not an object",
-                                "give an object such as {\"type\": \"cellular\"}");
+    if (has(fields, "procedural")) {
+        if (const auto formula = object_in(fields, "procedural",
+                                           "give an object such as {\"type\": \"cellular\"}")) {
+            cloud.shape = read_shape(*formula, cloud.layer);
         }
         cloud.thickness = thickness.value_or(kDefaultThickness);
         return;

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <utility>
 
 #include "formats/media/fields.h"
 #include "formats/media/limits.h"
@@ -31,23 +30,17 @@ std::optional<glm::dmat4> read_transform(const Fields& fields) {
         matrix[i / 4][i % 4] = is_right ? number.get<double>() : 0;
     }
     if (!is_right) {
-        fields.report.error(where, "it is not 16 numbers, each at most 1e9", example);
-        return std::nullopt;
+        return fields.report.fail(where, "it is not 16 numbers, each at most 1e9", example);
     }
     // Relative to its columns, so that neither a tiny nor a huge volume counts as flat.
     const double size = glm::length(matrix[0]) * glm::length(matrix[1]) * glm::length(matrix[2]);
     const bool is_affine =
         matrix[0][3] == 0 && matrix[1][3] == 0 && matrix[2][3] == 0 && matrix[3][3] == 1;
     if (!is_affine || !(std::abs(glm::determinant(glm::dmat3(matrix))) > 1e-9 * size)) {
-        fields.report.error(
+        return fields.report.fail(
             where, is_affine ? "it makes the volume flat" : "its last row is not 0 0 0 1", example);
-        return std::nullopt;
     }
     return matrix;
-}
-
-bool read_paper(const Fields& fields) {
-    return choice(fields, "fidelity", {"physical", "paper"}).value_or(0) == 1;
 }
 
 // Light of its own.
@@ -80,9 +73,8 @@ std::optional<VolumeEntry> read_body(const Fields& fields) {
         fields.report.error(place(fields.where, "material"), "it is empty",
                             "name the material of a closed mesh");
     }
-    volume.voxels = static_cast<std::uint32_t>(
-        count(fields, "voxels", kMinBodyVoxels, kMaxBodyVoxels).value_or(volume.voxels));
-    volume.paper = read_paper(fields);
+    volume.voxels = count(fields, "voxels", kMinBodyVoxels, kMaxBodyVoxels).value_or(volume.voxels);
+    volume.paper = is_paper(fields);
     return volume;
 }
 
@@ -91,10 +83,10 @@ std::optional<VolumeEntry> read_body(const Fields& fields) {
 std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& where,
                                        gltf::Resources& resources, gltf::Report& report) {
     if (!entry.is_object()) {
-        report.error(where, "it is not an object",
-                     "give an object such as {\"file\": \"smoke.vdb\", \"sigma_t\": [2, 2, 2], "
-                     "\"unit\": \"1/m\"}");
-        return std::nullopt;
+        return report.fail(
+            where, "it is not an object",
+            "give an object such as {\"file\": \"smoke.vdb\", \"sigma_t\": [2, 2, 2], "
+            "\"unit\": \"1/m\"}");
     }
     const Fields fields{entry, where, report};
     if (has(fields, "material")) {
@@ -113,20 +105,20 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
         volume.file = resources.folder / *name;
     }
     volume.density = text(fields, "density").value_or("");
-    const double per_metre = choice(fields, "unit", {"1/mm", "1/m"}).value_or(0) == 0 ? 1000 : 1;
+    const double scale = per_metre(fields);
     if (has(fields, "unit") && !has(fields, "sigma_t")) {
         report.error(place(where, "unit"), "there is no sigma_t for it",
                      "give sigma_t, or leave unit out");
     }
-    volume.sigma_t = rgb(fields, "sigma_t", 0, kMaxCoefficientPerM / per_metre, per_metre)
-                         .value_or(volume.sigma_t);
+    volume.sigma_t =
+        rgb(fields, "sigma_t", 0, kMaxCoefficientPerM / scale, scale).value_or(volume.sigma_t);
     if (const auto albedo = entry.find("albedo");
         albedo != entry.end() && albedo->is_string() && *albedo != "") {
         volume.albedo_grid = text(fields, "albedo").value_or("");
     } else {
         volume.albedo = rgb(fields, "albedo", 0, 1).value_or(volume.albedo);
     }
-    volume.paper = read_paper(fields);
+    volume.paper = is_paper(fields);
     if (volume.paper && !volume.albedo_grid.empty()) {
         fields.report.error(place(where, "fidelity"),
                             "the paper's formulas need an albedo that is alike everywhere",
@@ -134,14 +126,9 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
     }
     volume.scale = number(fields, "scale", kMinDensityScale, kMaxDensityScale).value_or(1);
     read_emission(fields, volume);
-    if (const auto phase = entry.find("phase"); phase != entry.end()) {
-        if (phase->is_object()) {
-            volume.phase = read_phase({*phase, place(where, "phase"), report}, resources)
-                               .value_or(PhaseFunction{});
-        } else {
-            report.error(place(where, "phase"), "it is not an object",
-                         "give an object such as {\"type\": \"hg\", \"g\": 0.6}");
-        }
+    if (const auto phase =
+            object_in(fields, "phase", "give an object such as {\"type\": \"hg\", \"g\": 0.6}")) {
+        volume.phase = read_phase(*phase, resources).value_or(PhaseFunction{});
     }
     volume.transform = read_transform(fields).value_or(glm::dmat4(1));
     return volume;

@@ -5,7 +5,6 @@
 #include <openvdb/io/GridDescriptor.h>
 #include <openvdb/io/io.h>
 
-#include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>

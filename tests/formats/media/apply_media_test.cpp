@@ -47,21 +47,24 @@ TEST(ApplyMedia, MatchesByNameAndStarTakesTheOthers) {
     EXPECT_EQ(scene.materials[3].medium->eta, 1.3f);
 }
 
-TEST(ApplyMedia, WithoutStarTheOthersStayAsTheyAre) {
-    Scene scene = scene_of({"Body", "Glass"});
-    scene.materials[1].medium = Medium{};
+TEST(ApplyMedia, WithoutStarTheOthersStayAndWhatIsNamedIsReplacedEachTime) {
+    Scene scene = scene_of({"Body", "Glass", "Pane", "Body"});
+    scene.materials[0].medium = scene.materials[1].medium = scene.materials[2].medium = Medium{};
     scene.materials[1].medium->eta = 1.7f;
-    (void)apply(media_of(R"("Body": {"preset": "marble"})"), scene);
+    EXPECT_TRUE(apply(media_of(R"("Body": {"preset": "marble"}, "Pane": {"opaque": true})"), scene)
+                    .empty());
+    EXPECT_EQ(scene.materials[0].medium->eta, 1.5f);
     EXPECT_EQ(scene.materials[1].medium->eta, 1.7f);
+    EXPECT_FALSE(scene.materials[2].medium.has_value());
+    EXPECT_TRUE(scene.materials[3].medium.has_value()) << "of the same name";
 }
 
 // Of a thin-walled surface nothing stays, neither its colour nor its second side.
 TEST(ApplyMedia, WhatReplacesAThinWalledSurfaceFindsTheMaterialAsItWas) {
     Scene scene = scene_of({"Leaf", "Body"});
     for (formats::Material& material : scene.materials) {
-        material.sheet = formats::Sheet{.reflect = {1, 1, 1},
-                                        .transmit = {0.5f, 1, 1},
-                                        .opaque_color = {0.1f, 0.2f, 0.3f}};
+        material.sheet = formats::Sheet{
+            .reflect = {1, 1, 1}, .transmit = {0.5f, 1, 1}, .opaque_color = {0.1f, 0.2f, 0.3f}};
         material.base_color = {0.2f, 0.2f, 0.3f};
         material.double_sided = true;
     }
@@ -88,14 +91,6 @@ TEST(ApplyMedia, AThinWalledEntryIsNoMetalAndAnOpaqueOneIsAgain) {
     EXPECT_EQ(scene.materials[0].gloss.metallic, 0);
     (void)apply(media_of(R"("Paper": {"opaque": true})"), scene);
     EXPECT_EQ(scene.materials[0].gloss.metallic, 1);
-}
-
-TEST(ApplyMedia, ReplacesWhatTheSceneSaysAndOpaqueRemovesIt) {
-    Scene scene = scene_of({"Body", "Glass"});
-    scene.materials[0].medium = scene.materials[1].medium = Medium{};
-    (void)apply(media_of(R"("Body": {"preset": "marble"}, "Glass": {"opaque": true})"), scene);
-    EXPECT_EQ(scene.materials[0].medium->eta, 1.5f);
-    EXPECT_FALSE(scene.materials[1].medium.has_value());
 }
 
 TEST(ApplyMedia, BaseColourIsThatOfTheEntryThenWhiteInAMediumThenTheFactor) {
@@ -134,12 +129,6 @@ TEST(ApplyMedia, ManyNamesThatNoMaterialHasAreOneWarningWithTheirNumber) {
     EXPECT_EQ(warnings[0].where, "materials");
     EXPECT_THAT(warnings[0].fault, HasSubstr("100000 names: 'M1', 'M2'"));
     EXPECT_LT(warnings[0].fault.size(), 200u);
-}
-
-TEST(ApplyMedia, SeveralMaterialsOfOneNameAllGetTheMedium) {
-    Scene scene = scene_of({"Body", "Body"});
-    EXPECT_TRUE(apply(media_of(R"("Body": {"preset": "cream"})"), scene).empty());
-    EXPECT_TRUE(scene.materials[0].medium && scene.materials[1].medium);
 }
 
 TEST(ApplyMedia, FilesJoinTheInputsAndTheHash) {

@@ -31,6 +31,21 @@ inline formats::CloudEntry cloud_of(const formats::Result<formats::MediaFile>& m
     return media->clouds[0];
 }
 
+/// An entry that is refused, the place that is named, and part of the fault or remedy.
+struct CloudFault {
+    std::string entry;
+    const char *place, *fault;
+};
+/// `start` stands before each entry.
+inline void expect_cloud_faults(const TemporaryFolder& folder, const std::string& start,
+                                const std::vector<CloudFault>& cases) {
+    for (const auto& [entry, place, fault] : cases) {
+        EXPECT_THAT(faults(read_cloud_in(folder, start + entry)),
+                    testing::AllOf(testing::HasSubstr(place), testing::HasSubstr(fault)))
+            << entry;
+    }
+}
+
 /// What formats/scene.h promises of every layer.
 inline bool is_sound(const formats::CloudEntry& cloud) {
     const formats::CloudLayer& layer = cloud.layer;

@@ -84,16 +84,6 @@ TEST(HostileMedia, DeepNestingIsRefusedBeforeAnyParser) {
     EXPECT_THAT(faults(read_text_as_media(text)), ::testing::HasSubstr("nests deeper"));
 }
 
-TEST(HostileMedia, ErrorsAreBoundedInNumber) {
-    Json json;
-    for (int i = 0; i < 1000; ++i) {
-        json["materials"][std::to_string(i)] = 5;
-    }
-    const auto media = read_text_as_media(json.dump());
-    ASSERT_FALSE(media.has_value());
-    EXPECT_LE(media.error().diagnostics.size(), 65u);
-}
-
 TEST(HostileMedia, TooManyRowsOfATableAreRefused) {
     const TemporaryFolder folder;
     std::string table;

@@ -184,21 +184,8 @@ TEST_F(LoadAlbedo, WhatIsNoAlbedoIsRefusedWithAMessage) {
     albedo_.voxels[3].value.y = 1.01f;
     EXPECT_THAT(fault(), HasSubstr("albedos above 1"));
     albedo_.voxels[3].value.y = std::nanf("");
-    EXPECT_THAT(fault(), HasSubstr("1 are NaN"));
-    albedo_.voxels[3].value.y = -0.5f;
-    EXPECT_THAT(fault(), HasSubstr("negative"));
-    albedo_.voxels[3].value.y = INFINITY;
-    EXPECT_THAT(fault(), HasSubstr("infinite"));
-    fill(glm::vec3(0.5f));
-    albedo_.background = 1;
-    EXPECT_THAT(fault(), HasSubstr("background"));
-    albedo_.background = 0;
-    albedo_.kind = Kind::level_set;
-    albedo_.values = Values::scalar;
-    EXPECT_THAT(fault(), HasSubstr("level set"));
-    albedo_.kind = Kind::fog;
-    albedo_.values = Values::real64;
-    EXPECT_THAT(fault(), HasSubstr("double"));
+    EXPECT_THAT(fault(), HasSubstr("1 are NaN")) << "what no grid may hold";
+    albedo_.voxels[3].value.y = 1;
     albedo_.name = "colour";
     EXPECT_THAT(fault(), HasSubstr("no grid 'albedo'"));
 }

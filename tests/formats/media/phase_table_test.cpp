@@ -1,4 +1,3 @@
-#include <cmath>
 #include <numbers>
 
 #include "formats/media/mean_cosine.h"
@@ -78,41 +77,30 @@ TEST(PhaseTable, BlackAndNearlyDeltaTablesAreRefused) {
     EXPECT_THAT(faults(read_table("-1 0\n0.9999 0\n1 1\n")), HasSubstr("mean cosine"));
 }
 
-TEST(PhaseTable, MustStayInTheFoldersReach) {
-    const TemporaryFolder folder, elsewhere;
-    write_text(elsewhere / "secret.csv", "-1 1\n1 1\n");
-    std::filesystem::create_symlink(elsewhere / "secret.csv", folder / "link.csv");
-    for (const std::string& name :
-         {"../" + elsewhere.path().filename().string() + "/secret.csv",
-          (elsewhere / "secret.csv").string(), std::string("link.csv"), std::string("file:///x")}) {
-        write_text(
-            folder / "media.json",
-            wax(R"("preset": "skin1", "phase": {"type": "table", "file": ")" + name + "\"}"));
-        EXPECT_THAT(faults(formats::read_media(folder / "media.json")),
-                    AllOf(HasSubstr("Wax > phase > file"), HasSubstr("leaves the asset's folder")))
-            << name;
-    }
-    write_text(folder / "media.json",
-               wax(R"("preset": "skin1", "phase": {"type": "table", "file": "none.csv"})"));
-    EXPECT_THAT(faults(formats::read_media(folder / "media.json")), HasSubstr("cannot be found"));
-}
-
-// Absolute, by "..", and through a link in the file's own folder.
-TEST(PhaseTable, IsReadFromAFolderThatIsAllowed) {
+// Absolute, by "..", through a link in the file's own folder, and by a scheme.
+TEST(PhaseTable, IsReadFromItsFolderAndFromThoseThatAreAllowed) {
     const TemporaryFolder folder, library, other;
     write_text(library / "table.csv", "-1 1\n1 1\n");
     std::filesystem::create_symlink(library / "table.csv", folder / "link.csv");
     const std::vector<std::filesystem::path> right{library.path()}, wrong{other.path()};
-    for (const std::string& name : {"../" + library.path().filename().string() + "/table.csv",
-                                    (library / "table.csv").string(), std::string("link.csv")}) {
+    const auto read = [&](const std::string& name, std::span<const std::filesystem::path> allowed) {
         write_text(
             folder / "media.json",
             wax(R"("preset": "skin1", "phase": {"type": "table", "file": ")" + name + "\"}"));
-        EXPECT_TRUE(formats::read_media(folder / "media.json", right)) << name;
-        EXPECT_THAT(faults(formats::read_media(folder / "media.json", wrong)),
-                    AllOf(HasSubstr("leaves the asset's folder"), HasSubstr("--allow-path")))
-            << name;
+        return formats::read_media(folder / "media.json", allowed);
+    };
+    for (const std::string& name :
+         {"../" + library.path().filename().string() + "/table.csv",
+          (library / "table.csv").string(), std::string("link.csv"), std::string("file:///x")}) {
+        EXPECT_EQ(read(name, right).has_value(), name != "file:///x") << name;
+        for (const auto& allowed : std::vector<std::vector<std::filesystem::path>>{wrong, {}}) {
+            EXPECT_THAT(faults(read(name, allowed)),
+                        AllOf(HasSubstr("Wax > phase > file"),
+                              HasSubstr("leaves the asset's folder"), HasSubstr("--allow-path")))
+                << name;
+        }
     }
+    EXPECT_THAT(faults(read("none.csv", {})), HasSubstr("cannot be found"));
 }
 
 }  // namespace

@@ -31,15 +31,6 @@ TEST(ReadMedia, EveryKeyOfACustomMediumArrives) {
     EXPECT_EQ(medium.fidelity, Medium::Fidelity::paper);
 }
 
-TEST(ReadMedia, DefaultsAreThoseOfMedium) {
-    const Medium medium = medium_of(R"("sigma_s": [1, 1, 1], "sigma_a": [0, 0, 0])"), plain;
-    EXPECT_EQ(medium.phase.type, PhaseFunction::Type::isotropic);
-    EXPECT_EQ(medium.eta, plain.eta);
-    EXPECT_EQ(medium.roughness, plain.roughness);
-    EXPECT_EQ(medium.profile, Medium::Profile::automatic);
-    EXPECT_EQ(medium.fidelity, Medium::Fidelity::physical);
-}
-
 TEST(ReadMedia, UnitIsPerMillimetreUnlessItSaysPerMetre) {
     const std::string entry = R"("sigma_s": [1, 2, 3], "sigma_a": [4, 5, 6])";
     const Medium plain = medium_of(entry), mm = medium_of(entry + R"(, "unit": "1/mm")"),

@@ -123,9 +123,7 @@ TEST_F(ReadThickness, AListOfPicturesIsAFrameAfterFrame) {
     EXPECT_EQ(one.frames, 1u);
     EXPECT_EQ(one.frame_seconds, 0);
 
-    const struct {
-        const char *entry, *place, *fault;
-    } cases[] = {
+    const std::vector<CloudFault> cases = {
         {R"("height_field": ["a.exr", "b.exr"])", "clouds > 0", "how long each picture"},
         {R"("height_field": ["a.exr", "b.exr"], "frame_seconds": 0)", "frame_seconds", "from 0.01"},
         {R"("height_field": ["a.exr", "b.exr"], "frame_seconds": 1, "loop": 1)", "loop", "true or"},
@@ -138,11 +136,7 @@ TEST_F(ReadThickness, AListOfPicturesIsAFrameAfterFrame) {
         {R"("height_field": ["a.exr"], "loop": true)", "loop", "one picture only"},
         {R"("thickness": 3, "loop": true)", "loop", "no height_field"},
     };
-    for (const auto& c : cases) {
-        EXPECT_THAT(faults(read_cloud_in(folder_, c.entry)),
-                    AllOf(HasSubstr(c.place), HasSubstr(c.fault)))
-            << c.entry;
-    }
+    expect_cloud_faults(folder_, "", cases);
 }
 
 TEST_F(ReadThickness, AllFramesTogetherAreBounded) {
@@ -208,9 +202,7 @@ TEST_F(ReadThickness, DamagedImagesGiveASoundLayerOrAMessage) {
 }
 
 TEST_F(ReadThickness, FaultsOfKeysAreNamed) {
-    const struct {
-        const char *entry, *place, *fault;
-    } cases[] = {
+    const std::vector<CloudFault> cases = {
         {"", "clouds > 0", "how thick"},
         {R"("thickness": 0)", "clouds > 0 > thickness", "from 1e-06"},
         {R"("height_field": "nowhere.exr")", "clouds > 0 > height_field", ""},
@@ -235,11 +227,7 @@ TEST_F(ReadThickness, FaultsOfKeysAreNamed) {
          "four texels"},
         {R"("procedural": {"type": "waves"}, "thickness": -5)", "clouds > 0 > thickness", "from"},
     };
-    for (const auto& c : cases) {
-        EXPECT_THAT(faults(read_cloud_in(folder_, c.entry)),
-                    AllOf(HasSubstr(c.place), HasSubstr(c.fault)))
-            << c.entry;
-    }
+    expect_cloud_faults(folder_, "", cases);
 }
 
 }  // namespace

@@ -58,6 +58,16 @@ TEST(ReadVdb, VoxelsAndOnlyTheyHaveTheirValues) {
     }
 }
 
+TEST(ReadVdb, InactiveVoxelsAreZeroAndBricksWithoutAValueDropped) {
+    const auto grids = written_and_read({{.voxels = {{{0, 0, 0}, glm::vec3(1)},
+                                                     {{1, 0, 0}, glm::vec3(7), false},
+                                                     {{1000, 0, 0}, glm::vec3(0)}}}});
+    ASSERT_EQ(grids.size(), 1u);
+    EXPECT_EQ(grids[0].scalar.at({1, 0, 0}), 0.0f);
+    EXPECT_EQ(grids[0].scalar.extent, glm::ivec3(1));
+    EXPECT_EQ(grids[0].active_voxels, 2u);
+}
+
 TEST(ReadVdb, HalvesAreReadAsFloats) {
     const auto grids =
         written_and_read({{.values = Values::half,
@@ -95,22 +105,6 @@ TEST(ReadVdb, ActiveTilesAreFilledIn) {
     EXPECT_EQ(density.at({0, 0, 0}), 0.0f);
     EXPECT_EQ(density.at({64, 0, 0}), 0.0f);
     EXPECT_EQ(density.at({200, 0, 0}), 2.0f);
-}
-
-TEST(ReadVdb, InactiveVoxelsAreZero) {
-    const auto grids = written_and_read(
-        {{.voxels = {{{0, 0, 0}, glm::vec3(1)}, {{1, 0, 0}, glm::vec3(7), false}}}});
-    ASSERT_EQ(grids.size(), 1u);
-    EXPECT_EQ(grids[0].scalar.at({1, 0, 0}), 0.0f);
-    EXPECT_EQ(grids[0].active_voxels, 1u);
-}
-
-TEST(ReadVdb, BricksWithoutAValueAreDropped) {
-    const auto grids =
-        written_and_read({{.voxels = {{{0, 0, 0}, glm::vec3(1)}, {{1000, 0, 0}, glm::vec3(0)}}}});
-    ASSERT_EQ(grids.size(), 1u);
-    EXPECT_EQ(grids[0].scalar.extent, glm::ivec3(1));
-    EXPECT_EQ(grids[0].active_voxels, 2u);
 }
 
 TEST(ReadVdb, FewBadVoxelsBecomeZeroAndAreCounted) {

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
-#include <span>
 #include <string>
 #include <vector>
 

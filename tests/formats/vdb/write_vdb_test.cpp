@@ -1,6 +1,6 @@
 #include "formats/vdb/write_vdb.h"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <limits>
 
@@ -117,21 +117,24 @@ TEST(WriteVdb, BytesAreTheSameOnEveryRunAndTheIdentifierFollowsThem) {
 
 TEST(WriteVdb, WhatNoFogVolumeHasIsRefused) {
     SparseGrid<float> grid = three_bricks();
-    EXPECT_NE(fault_of({.name = "", .grid = &grid}).find("name"), std::string::npos);
+    const auto expect_fault = [&](const char* fault, bool is_half = false) {
+        EXPECT_THAT(fault_of({.name = "a", .grid = &grid, .is_half = is_half}),
+                    testing::HasSubstr(fault));
+    };
+    EXPECT_THAT(fault_of({.name = "", .grid = &grid}), testing::HasSubstr("name"));
     grid.value[3] = -1;
-    EXPECT_NE(fault_of({.name = "a", .grid = &grid}).find("negative"), std::string::npos);
+    expect_fault("negative");
     grid.value[3] = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_NE(fault_of({.name = "a", .grid = &grid}).find("finite"), std::string::npos);
+    expect_fault("finite");
     grid.value[3] = 70000;
-    EXPECT_NE(fault_of({.name = "a", .grid = &grid, .is_half = true}).find("65504"),
-              std::string::npos);
+    expect_fault("65504", true);
     grid.to_scene[1] = {0, 0, 0, 0};
-    EXPECT_NE(fault_of({.name = "a", .grid = &grid}).find("transform"), std::string::npos);
+    expect_fault("transform");
     grid.to_scene = glm::dmat4(1e-6);
     grid.to_scene[3][3] = 1;
-    EXPECT_NE(fault_of({.name = "a", .grid = &grid}).find("too small"), std::string::npos);
+    expect_fault("too small");
     const SparseGrid<float> empty;
-    EXPECT_NE(fault_of({.name = "a", .grid = &empty}).find("no value"), std::string::npos);
+    EXPECT_THAT(fault_of({.name = "a", .grid = &empty}), testing::HasSubstr("no value"));
     const TemporaryFolder folder;
     grid = three_bricks();
     EXPECT_FALSE(write_vdb(folder / "a.vdb",
