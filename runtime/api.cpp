@@ -2,7 +2,6 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 #include <new>
 #include <optional>
 #include <span>

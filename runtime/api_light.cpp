@@ -2,7 +2,6 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <utility>
 
 #include "formats/opal/cubemap.h"
 #include "runtime/api_support.h"

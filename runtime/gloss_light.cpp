@@ -1,7 +1,6 @@
 #include "runtime/gloss_light.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <queue>
 

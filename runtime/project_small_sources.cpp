@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 
 #include "formats/opal/cubemap.h"
 #include "runtime/map_geometry.h"

@@ -2,7 +2,6 @@
 #include <atomic>
 #include <memory>
 #include <optional>
-#include <utility>
 
 #include "runtime/api_support.h"
 #include "runtime/embed_gl/api_gl_support.h"

@@ -1,7 +1,6 @@
 #include "runtime/gl/gl_layer_pass.h"
 
 #include <array>
-#include <cmath>
 #include <string>
 #include <utility>
 

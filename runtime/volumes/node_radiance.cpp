@@ -1,6 +1,5 @@
 #include "runtime/volumes/node_radiance.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>

@@ -1,7 +1,6 @@
 #include "runtime/volumes/sun_columns.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "runtime/parallel.h"
 #include "runtime/volumes/brick_walk.h"

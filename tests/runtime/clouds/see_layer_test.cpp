@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 #include "runtime/clouds/ground_cells.h"
 #include "runtime/clouds/layer_march.h"

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <string>
 
 #include "runtime/clouds/map_peak.h"
 #include "tests/runtime/light_test_support.h"
