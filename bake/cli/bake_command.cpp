@@ -123,21 +123,6 @@ std::vector<OutputFile> name_outputs(const BakeCommand& options) {
     return outputs;
 }
 
-// All of them or none, as far as the disk allows: what may fail comes before the first name.
-formats::Status commit_all(std::vector<formats::AtomicFile>& files) {
-    for (formats::AtomicFile& file : files) {
-        if (auto status = file.sync(); !status) {
-            return status;
-        }
-    }
-    for (formats::AtomicFile& file : files) {
-        if (auto status = file.commit(); !status) {
-            return status;
-        }
-    }
-    return formats::ok_status();
-}
-
 // Predicted seconds of the stages, before a pilot changed any knob.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
                    const MachineRates& machine, const bake::BakeExtras& extras,
@@ -156,102 +141,63 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
 int run(const BakeCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto wanted = parse_effects(options.scene);
-    if (!wanted) {
-        return report_error(wanted.error());
-    }
-    const auto knobs = bake::resolve_knobs(bake::all_effects(), *wanted);
-    if (!knobs) {
-        return report_error(knobs.error());
-    }
-    auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::fields);
-    if (!imported) {
-        return report_error(imported.error());
-    }
-    if (auto status = bake::check_effects(bake::all_effects(), imported->scene, *knobs); !status) {
-        return report_error(status.error());
-    }
+    const auto knobs = require(bake::resolve_knobs(bake::all_effects(), wanted));
+    auto imported = open_scene(options.scene, knobs, formats::CloudDetail::fields);
+    require(bake::check_effects(bake::all_effects(), imported.scene, knobs));
     const std::vector<OutputFile> outputs = name_outputs(options);
     if (is_scene_ending(ending_of(options.output))) {
-        return report_error(formats::make_error(
-            formats::ErrorKind::usage, options.output, "--output",
-            "programs would take it for a scene by its ending", "end the name in .opal"));
+        refuse(formats::make_error(formats::ErrorKind::usage, options.output, "--output",
+                                   "programs would take it for a scene by its ending",
+                                   "end the name in .opal"));
     }
-    if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
-        return report_error(status.error());
-    }
-    // Create outputs before the work, so that an unwritable folder fails at once.
-    std::vector<formats::AtomicFile> files;
-    for (const OutputFile& output : outputs) {
-        auto file = formats::AtomicFile::create(output.path);
-        if (!file) {
-            return report_error(file.error());
-        }
-        files.push_back(std::move(*file));
-    }
+    require(check_outputs(outputs, imported.scene.inputs));
+    std::vector<formats::AtomicFile> files = create_outputs(outputs);
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
     context.on_progress = make_progress_printer(options.progress, "bake");
-    auto result =
-        bake::run_bake(bake::all_effects(), imported->scene, *knobs, context, options.extras);
-    if (!result) {
-        return report_error(result.error());
-    }
+    auto result = require(
+        bake::run_bake(bake::all_effects(), imported.scene, knobs, context, options.extras));
     for (formats::Diagnostic& unmet :
-         bake::describe_unmet({bake::all_effects(), imported->scene, result->facts, result->knobs,
-                               result->plan, result->volume_plan},
-                              *wanted)) {
-        result->warnings.push_back(std::move(unmet));
+         bake::describe_unmet({bake::all_effects(), imported.scene, result.facts, result.knobs,
+                               result.plan, result.volume_plan},
+                              wanted)) {
+        result.warnings.push_back(std::move(unmet));
     }
-    std::vector<formats::Diagnostic> warnings = imported->warnings;
-    warnings.insert(warnings.end(), result->warnings.begin(), result->warnings.end());
-    if (auto status = report_warnings(result->warnings); !status) {
-        return report_error(status.error());
-    }
+    std::vector<formats::Diagnostic> warnings = imported.warnings;
+    warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
+    require(report_warnings(result.warnings));
     formats::AtomicFile& file = files.back();
-    if (auto status = formats::write_opal_bytes(result->asset.view(), file, result->receiver_errors,
-                                                options.compression);
-        !status) {
-        return report_error(status.error());
-    }
+    require(formats::write_opal_bytes(result.asset.view(), file, result.receiver_errors,
+                                      options.compression));
     const std::uint64_t bytes = file.bytes_written();
     std::size_t next = 0;
     const MachineRates machine = find_machine_rates();
     const bake::CostRequest request{bake::all_effects(),
-                                    imported->scene,
-                                    result->facts,
-                                    result->knobs,
+                                    imported.scene,
+                                    result.facts,
+                                    result.knobs,
                                     machine.rates,
-                                    result->threads,
+                                    result.threads,
                                     options.extras.receiver_errors};
-    const bake::CostPrediction used =
-        bake::predict_costs(request, result->plan, result->volume_plan);
+    const bake::CostPrediction used = bake::predict_costs(request, result.plan, result.volume_plan);
     if (!options.report.empty()) {
-        bake::predict_savings(request, result->plan);
-        const Expectation expected =
-            expect(imported->scene, *knobs, machine, options.extras, *result);
-        if (auto status = files[next++].write(
-                make_report(imported->scene, *result, expected, warnings, bytes));
-            !status) {
-            return report_error(status.error());
-        }
+        bake::predict_savings(request, result.plan);
+        const Expectation expected = expect(imported.scene, knobs, machine, options.extras, result);
+        require(
+            files[next++].write(make_report(imported.scene, result, expected, warnings, bytes)));
     }
     if (!options.depfile.empty()) {
-        if (auto status = files[next].write(make_depfile(options.output, imported->scene.inputs));
-            !status) {
-            return report_error(status.error());
-        }
+        require(files[next].write(make_depfile(options.output, imported.scene.inputs)));
     }
-    if (auto status = commit_all(files); !status) {
-        return report_error(status.error());
-    }
-    learn_machine_rates(machine.rates, used, result->stages);
+    commit_outputs(files);
+    learn_machine_rates(machine.rates, used, result.stages);
     if (context.on_progress) context.on_progress({"bake", 1, 1});
     if (options.verbose) {
-        print_stages(*result);
+        print_stages(result);
     }
-    print_summary(options, *result, bytes, warnings.size());
+    print_summary(options, result, bytes, warnings.size());
     return kExitSuccess;
 }
 

@@ -12,28 +12,24 @@
 
 namespace opaline::cli {
 
-using formats::ErrorKind;
-using formats::make_error;
 using formats::Result;
-using formats::Status;
 
 namespace {
 
 constexpr std::uint32_t kMostPixels = runtime::kMaxPictureSize;  // along one side
 
-Status parse_size(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
+void parse_size(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
     const std::size_t cross = std::min(text.find('x'), text.size());
     std::string w = text.substr(0, cross), h = text.substr(std::min(cross + 1, text.size()));
     const CLI::Validator pixels = whole_number(1, kMostPixels);
     if (!pixels(w).empty() || !pixels(h).empty()) {
-        return make_error(ErrorKind::usage, "", "--size",
-                          "'" + shorten(text) + "' is not WIDTHxHEIGHT in pixels, each from 1 to " +
-                              std::to_string(kMostPixels),
-                          "give for example 960x720");
+        refuse_usage("--size",
+                     "'" + shorten(text) + "' is not WIDTHxHEIGHT in pixels, each from 1 to " +
+                         std::to_string(kMostPixels),
+                     "give for example 960x720");
     }
     width = static_cast<std::uint32_t>(std::stoul(w));
     height = static_cast<std::uint32_t>(std::stoul(h));
-    return formats::ok_status();
 }
 
 // Angles and distance that are not given stay those of the framing camera: `from` its target to its
@@ -86,52 +82,35 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
         ->option_text("DEG [32]");
 }
 
-Result<runtime::Camera> make_camera(const CameraOptions& options, const formats::AssetView& view) {
+runtime::Camera make_camera(const CameraOptions& options, const formats::AssetView& view) {
     std::uint32_t width = 0, height = 0;
-    if (auto status = parse_size(options.size, width, height); !status) {
-        return status.error();
-    }
+    parse_size(options.size, width, height);
     runtime::Camera camera = runtime::frame_asset(view, options.fov, width, height);
     const formats::Vec3 framing = camera.eye - camera.target;
     if (!options.target.empty()) {
-        const auto target = parse_vec3("--target", options.target);
-        if (!target) {
-            return target.error();
-        }
-        camera.target = *target;
+        camera.target = parse_vec3("--target", options.target);
     }
     if (options.azimuth || options.elevation || options.distance) {
         place_by_angles(options, framing, camera);
     }
     if (!options.eye.empty()) {
-        const auto eye = parse_vec3("--eye", options.eye);
-        if (!eye) {
-            return eye.error();
-        }
-        camera.eye = *eye;
+        camera.eye = parse_vec3("--eye", options.eye);
     }
     if (!options.up.empty()) {
         const auto up = parse_vec3("--up", options.up);
-        if (!up) {
-            return up.error();
+        if (formats::length(up) == 0) {
+            refuse_usage("--up", "is no direction", "give for example 0,1,0");
         }
-        if (formats::length(*up) == 0) {
-            return make_error(ErrorKind::usage, "", "--up", "is no direction",
-                              "give for example 0,1,0");
-        }
-        camera.up = *up;
+        camera.up = up;
     }
     if (formats::length(camera.target - camera.eye) == 0) {
-        return make_error(ErrorKind::usage, "", "--eye", "lies in the target",
-                          "move one of them: the camera has no direction");
+        refuse_usage("--eye", "lies in the target",
+                     "move one of them: the camera has no direction");
     }
     if (!frames_object(options)) {
         camera.near_plane = runtime::near_plane_for(view, camera.eye);
     }
-    if (auto status = runtime::check_camera(camera, runtime::SoftwareOptions{}.supersampling);
-        !status) {
-        return status.error();
-    }
+    require(runtime::check_camera(camera, runtime::SoftwareOptions{}.supersampling));
     return camera;
 }
 

@@ -23,7 +23,6 @@ void add_camera_options(CLI::App& command, CameraOptions& options);
 bool frames_object(const CameraOptions& options);
 
 /// The requested camera; missing parts are chosen to frame the object. Errors: usage.
-formats::Result<runtime::Camera> make_camera(const CameraOptions& options,
-                                             const formats::AssetView& view);
+runtime::Camera make_camera(const CameraOptions& options, const formats::AssetView& view);
 
 }  // namespace opaline::cli

@@ -20,26 +20,23 @@ struct CompareCommand {
 };
 
 int run(const CompareCommand& options) {
-    const auto comparison = bake::compare_files(options.a, options.b);
-    if (!comparison) {
-        return report_error(comparison.error());
-    }
+    const auto comparison = require(bake::compare_files(options.a, options.b));
     const bool is_within =
-        options.max_relative < 0 || comparison->relative_rmse <= options.max_relative;
+        options.max_relative < 0 || comparison.relative_rmse <= options.max_relative;
     if (options.json) {
-        fmt::print("{}", json_text({{"elements", comparison->count},
-                                    {"rmse", comparison->rmse},
-                                    {"relative_rmse", comparison->relative_rmse},
-                                    {"p95", comparison->p95},
-                                    {"maximum", comparison->maximum},
+        fmt::print("{}", json_text({{"elements", comparison.count},
+                                    {"rmse", comparison.rmse},
+                                    {"relative_rmse", comparison.relative_rmse},
+                                    {"p95", comparison.p95},
+                                    {"maximum", comparison.maximum},
                                     {"within", is_within}}));
         return is_within ? kExitSuccess : kExitNo;
     }
-    fmt::print("elements        {}\n", comparison->count);
-    fmt::print("rmse            {:.6g}\n", comparison->rmse);
-    fmt::print("relative rmse   {:.6g}\n", comparison->relative_rmse);
-    fmt::print("95th percentile {:.6g}\n", comparison->p95);
-    fmt::print("maximum         {:.6g}\n", comparison->maximum);
+    fmt::print("elements        {}\n", comparison.count);
+    fmt::print("rmse            {:.6g}\n", comparison.rmse);
+    fmt::print("relative rmse   {:.6g}\n", comparison.relative_rmse);
+    fmt::print("95th percentile {:.6g}\n", comparison.p95);
+    fmt::print("maximum         {:.6g}\n", comparison.maximum);
     if (!is_within) {
         fmt::print(stderr, "opaline: {} differs from {} by more than {:g}\n", printable(options.a),
                    printable(options.b), options.max_relative);

@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "bake/cli/exit_codes.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/outputs.h"
@@ -30,58 +29,44 @@ double elapsed_since(FrameClock::time_point start) {
 
 // Of all frames; `meter(camera)` draws the picture that it is chosen from.
 template <class Meter>
-formats::Status choose_exposure(const FrameOptions& options, const runtime::Camera& camera,
-                                Drawing& drawing, Meter&& meter) {
+void choose_exposure(const FrameOptions& options, const runtime::Camera& camera, Drawing& drawing,
+                     Meter&& meter) {
     if (options.exposure || ending_of(options.output) == ".exr") {
         drawing.exposure = options.exposure.value_or(0.0f);
-        return formats::ok_status();
+        return;
     }
-    const formats::Result<runtime::Picture> metered = meter(runtime::meter_camera(camera));
-    if (!metered) return metered.error();
-    drawing.exposure = runtime::choose_exposure(*metered);
+    drawing.exposure = runtime::choose_exposure(require(meter(runtime::meter_camera(camera))));
     if (*drawing.exposure != 0) {
         print_note(fmt::format("exposure {:+.2f} EV; --exposure sets it", *drawing.exposure));
     }
-    return formats::ok_status();
 }
 
 // Draws and writes with `draw(camera)`, exposed as `meter(camera)` asks for.
 template <class Draw, class Meter>
-int write_frames(const FrameOptions& options, const runtime::Camera& camera, std::uint32_t end,
-                 Drawing& drawing, Draw&& draw, Meter&& meter) {
+void write_frames(const FrameOptions& options, const runtime::Camera& camera, std::uint32_t end,
+                  Drawing& drawing, Draw&& draw, Meter&& meter) {
     const std::atomic<bool>& interrupted = catch_interrupts();
-    if (!drawing.exposure) {
-        if (auto status = choose_exposure(options, camera, drawing, meter); !status) {
-            return report_error(status.error());
-        }
-    }
+    if (!drawing.exposure) choose_exposure(options, camera, drawing, meter);
     for (; drawing.frames < end; ++drawing.frames) {
         if (interrupted.load()) {
-            return report_error(make_error(ErrorKind::interrupted, "", "", "interrupted",
-                                           "frames written so far are whole"));
+            refuse(make_error(ErrorKind::interrupted, "", "", "interrupted",
+                              "frames written so far are whole"));
         }
         const double degrees = options.turn * drawing.frames / options.frames;
         const auto start = FrameClock::now();
         const auto picture = draw(runtime::orbit(camera, static_cast<float>(degrees)));
         drawing.seconds += elapsed_since(start);
-        if (!picture) {
-            return report_error(picture.error());
-        }
-        if (auto status = write_picture(frame_path(options, drawing.frames), *picture,
-                                        *drawing.exposure, options.tone_map);
-            !status) {
-            return report_error(status.error());
-        }
+        require(write_picture(frame_path(options, drawing.frames), require(picture),
+                              *drawing.exposure, options.tone_map));
         if (options.on_progress && options.frames > 1) {
             options.on_progress({"frames", drawing.frames + 1, options.frames});
         }
     }
-    return kExitSuccess;
 }
 
-int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
-                const PictureLight& light, const runtime::Camera& camera, Shown shown,
-                std::uint32_t end, Drawing& drawing) {
+void draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
+                 const PictureLight& light, const runtime::Camera& camera, Shown shown,
+                 std::uint32_t end, Drawing& drawing) {
     formats::Vec3 shaded_for = camera.eye;
     const runtime::PartLights lights = light.parts.lights();
     auto start = FrameClock::now();
@@ -123,7 +108,7 @@ int draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     runtime::SoftwareOptions metering = software;
     metering.supersampling = 1;
     metering.background = shown.background && !view.clouds.empty();
-    return write_frames(
+    write_frames(
         options, camera, end, drawing,
         [&](const runtime::Camera& at) { return draw(at, software); },
         [&](const runtime::Camera& at) { return draw(at, metering); });
@@ -147,11 +132,11 @@ formats::Status prepare_renderer(const formats::AssetView& view, const PictureLi
 }
 #endif
 
-int draw_on_gpu([[maybe_unused]] const FrameOptions& options,
-                [[maybe_unused]] const formats::AssetView& view,
-                [[maybe_unused]] const PictureLight& light,
-                [[maybe_unused]] const runtime::Camera& camera, [[maybe_unused]] Shown shown,
-                [[maybe_unused]] std::uint32_t end, [[maybe_unused]] Drawing& drawing) {
+void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
+                 [[maybe_unused]] const formats::AssetView& view,
+                 [[maybe_unused]] const PictureLight& light,
+                 [[maybe_unused]] const runtime::Camera& camera, [[maybe_unused]] Shown shown,
+                 [[maybe_unused]] std::uint32_t end, [[maybe_unused]] Drawing& drawing) {
 #ifdef OPALINE_HAS_GL
     const bool is_first = !drawing.renderer;
     const auto prepared = prepare_renderer(view, light, drawing);
@@ -164,18 +149,11 @@ int draw_on_gpu([[maybe_unused]] const FrameOptions& options,
     if (!prepared) {
         formats::Error error = prepared.error();
         error.diagnostics.front().remedy = "use --backend cpu";
-        return report_error(error);
+        refuse(std::move(error));
     }
     runtime::GlRenderer& renderer = *drawing.renderer;
-    if (auto status = renderer.set_light(light.parts.lights(), light.sky.rotation, shown.emitters);
-        !status) {
-        return report_error(status.error());
-    }
-    if (shown.background && light.layers.layers) {
-        if (auto status = renderer.set_layers(*light.layers.layers); !status) {
-            return report_error(status.error());
-        }
-    }
+    require(renderer.set_light(light.parts.lights(), light.sky.rotation, shown.emitters));
+    if (shown.background && light.layers.layers) require(renderer.set_layers(*light.layers.layers));
     if (options.stats && is_first) {
         fmt::print("{:<16} {}\n", "device", renderer.stats().device);
         print_seconds(options, "upload", renderer.stats().upload_seconds);
@@ -189,7 +167,7 @@ int draw_on_gpu([[maybe_unused]] const FrameOptions& options,
     runtime::GlRenderOptions metering = gl;
     metering.supersampling = 1;
     metering.background = shown.background && !view.clouds.empty();
-    return write_frames(
+    write_frames(
         options, camera, end, drawing,
         [&](const runtime::Camera& at) { return renderer.render(at, gl); },
         [&](const runtime::Camera& at) { return renderer.render(at, metering); });
@@ -197,8 +175,8 @@ int draw_on_gpu([[maybe_unused]] const FrameOptions& options,
     if (options.backend == Backend::automatic) {
         return draw_on_cpu(options, view, light, camera, shown, end, drawing);
     }
-    return report_error(make_error(ErrorKind::resource, "", "--backend",
-                                   "this program was built without OpenGL", "use --backend cpu"));
+    refuse(make_error(ErrorKind::resource, "", "--backend", "this program was built without OpenGL",
+                      "use --backend cpu"));
 #endif
 }
 
@@ -230,9 +208,9 @@ void print_seconds(const FrameOptions& options, const char* name, double seconds
     }
 }
 
-int draw_frames(const FrameOptions& options, const formats::AssetView& view,
-                const PictureLight& light, const runtime::Camera& camera, Shown shown,
-                std::uint32_t end, Drawing& drawing) {
+void draw_frames(const FrameOptions& options, const formats::AssetView& view,
+                 const PictureLight& light, const runtime::Camera& camera, Shown shown,
+                 std::uint32_t end, Drawing& drawing) {
     const bool on_cpu = options.backend == Backend::cpu || drawing.lacks_gl;
     return (on_cpu ? draw_on_cpu : draw_on_gpu)(options, view, light, camera, shown, end, drawing);
 }

@@ -72,10 +72,10 @@ struct Drawing {
 };
 
 /// Draws the frames up to `end` that are not drawn yet, and writes them. `camera`: of the first
-/// frame. Gives an exit code, and reports errors. The file and the sky are the same in each call.
-int draw_frames(const FrameOptions& options, const formats::AssetView& view,
-                const PictureLight& light, const runtime::Camera& camera, Shown shown,
-                std::uint32_t end, Drawing& drawing);
+/// frame. Throws Refusal (messages.h). The file and the sky are the same in each call.
+void draw_frames(const FrameOptions& options, const formats::AssetView& view,
+                 const PictureLight& light, const runtime::Camera& camera, Shown shown,
+                 std::uint32_t end, Drawing& drawing);
 
 /// A line of `--stats`.
 void print_seconds(const FrameOptions& options, const char* name, double seconds);

@@ -81,12 +81,7 @@ void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_ch
                 "and accuracy grow as it falls")
             ->check(real_number(0.005, 10))
             ->option_text("S [0.03]");
-    options.threads_option =
-        command
-            .add_option("--threads", options.threads,
-                        "0: one per core; the result is the same for any number")
-            ->transform(whole_number(0, 1024))
-            ->option_text("T [0]");
+    options.threads_option = add_threads_option(command, options.threads);
 }
 
 std::vector<std::string> given_droplet_options(const DropletOptions& options) {
@@ -103,81 +98,63 @@ std::vector<std::string> given_droplet_options(const DropletOptions& options) {
     return names;
 }
 
-formats::Result<std::complex<double>> parse_index(const std::string& text) {
+std::complex<double> parse_index(const std::string& text) {
     const std::size_t comma = text.find(',');
     const auto real = parse_number(text.substr(0, comma));
     const auto imaginary =
         comma == std::string::npos ? std::optional(0.0) : parse_number(text.substr(comma + 1));
     if (!real || !imaginary) {
-        return formats::make_error(formats::ErrorKind::usage, "", "--index",
-                                   fmt::format("'{}' is not one number or two", shorten(text)),
-                                   "give N or N,K, for example 1.333 or 1.5,0.01");
+        refuse_usage("--index", fmt::format("'{}' is not one number or two", shorten(text)),
+                     "give N or N,K, for example 1.333 or 1.5,0.01");
     }
     const std::complex<double> index(*real, *imaginary);
-    if (auto status = bake::check_sphere(1, index); !status) {
-        return std::move(status).error();
-    }
+    require(bake::check_sphere(1, index));
     return index;
 }
 
-formats::Result<std::complex<double>> index_at(const SubstanceOptions& options, double wavelength) {
-    return options.index.empty() ? bake::refractive_index(options.substance, wavelength)
+std::complex<double> index_at(const SubstanceOptions& options, double wavelength) {
+    return options.index.empty() ? require(bake::refractive_index(options.substance, wavelength))
                                  : parse_index(options.index);
 }
 
-formats::Result<std::vector<double>> weights_of(const SubstanceOptions& options,
-                                                std::size_t wavelengths) {
+std::vector<double> weights_of(const SubstanceOptions& options, std::size_t wavelengths) {
     if (options.weights.empty()) {
         return std::vector<double>(wavelengths, 1.0);
     }
     if (options.weights.size() != wavelengths) {
-        return formats::make_error(
-            formats::ErrorKind::usage, "", "--weights",
+        refuse_usage(
+            "--weights",
             fmt::format("there are {} for {} wavelengths", options.weights.size(), wavelengths),
             "give one for each wavelength of --wavelength");
     }
     if (std::ranges::none_of(options.weights, [](double weight) { return weight > 0; })) {
-        return formats::make_error(formats::ErrorKind::usage, "", "--weights", "all of them are 0",
-                                   "give one above 0");
+        refuse_usage("--weights", "all of them are 0", "give one above 0");
     }
     return options.weights;
 }
 
-formats::Result<std::vector<bake::DropletOptics>> average_droplets(
-    const DropletOptions& options, const std::vector<double>& wavelengths) {
-    if (auto status = check_threads(options.threads); !status) {
-        return std::move(status).error();
-    }
+std::vector<bake::DropletOptics> average_droplets(const DropletOptions& options,
+                                                  const std::vector<double>& wavelengths) {
+    require(check_threads(options.threads));
     std::vector<std::complex<double>> indices;
     for (const double wavelength : wavelengths) {
-        const auto index = index_at(options.substance, wavelength);
-        if (!index) {
-            return index.error();
-        }
-        indices.push_back(*index);
+        indices.push_back(index_at(options.substance, wavelength));
     }
     if (bake::relative_width(options.droplets) < bake::kMonodisperse) {
-        const formats::Status status = report_warnings({formats::make_warning(
+        require(report_warnings({formats::make_warning(
             "", "--gamma",
             fmt::format("radii spread by {:.2g} of their mean only, so that ripples of equal "
                         "spheres show",
                         bake::relative_width(options.droplets)),
-            "give at most 396 for a cloud")});
-        if (!status) {
-            return status.error();
-        }
+            "give at most 396 for a cloud")}));
     }
     bake::Context context;
     context.threads = options.threads;
     context.cancel = &catch_interrupts();
     std::vector<bake::DropletOptics> all;
     for (std::size_t i = 0; i < wavelengths.size(); ++i) {
-        auto optics = bake::average_droplets(options.droplets, wavelengths[i], indices[i],
-                                             options.sampling, context);
-        if (!optics) {
-            return std::move(optics).error();
-        }
-        all.push_back(*std::move(optics));
+        all.push_back(require(bake::average_droplets(options.droplets, wavelengths[i], indices[i],
+                                                     options.sampling, context)));
     }
     return all;
 }

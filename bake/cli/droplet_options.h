@@ -41,19 +41,18 @@ void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_ch
 std::vector<std::string> given_droplet_options(const DropletOptions& options);
 
 /// "N" or "N,K". Errors: usage.
-formats::Result<std::complex<double>> parse_index(const std::string& text);
+std::complex<double> parse_index(const std::string& text);
 
 /// The index that was given, or that of the substance at a wavelength [m]. Errors: usage.
-formats::Result<std::complex<double>> index_at(const SubstanceOptions& options, double wavelength);
+std::complex<double> index_at(const SubstanceOptions& options, double wavelength);
 
 /// Weights of as many wavelengths, which make one channel. Errors: usage.
-formats::Result<std::vector<double>> weights_of(const SubstanceOptions& options,
-                                                std::size_t wavelengths);
+std::vector<double> weights_of(const SubstanceOptions& options, std::size_t wavelengths);
 
 /// Means over the droplets at each wavelength [m]. Warns of distributions so narrow that ripples of
 /// equal spheres show. Errors: usage, resource, interrupted.
-formats::Result<std::vector<bake::DropletOptics>> average_droplets(
-    const DropletOptions& options, const std::vector<double>& wavelengths);
+std::vector<bake::DropletOptics> average_droplets(const DropletOptions& options,
+                                                  const std::vector<double>& wavelengths);
 
 /// The droplets, and a wavelength's numerical error, as they are printed.
 nlohmann::ordered_json describe_droplets(const bake::DropletDistribution& droplets);

@@ -31,29 +31,21 @@ int list_all() {
 }
 
 // A sun of half a degree wants a finer map than soft lights do.
-formats::Result<std::filesystem::path> write_light(const std::string& spec,
-                                                   const std::filesystem::path& folder) {
-    auto environment = bake::make_environment(spec);
-    if (!environment) {
-        return std::move(environment).error();
-    }
+std::filesystem::path write_light(const std::string& spec, const std::filesystem::path& folder) {
+    auto environment = require(bake::make_environment(spec));
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) {
-        return formats::make_error(formats::ErrorKind::resource, folder.string(), "",
+        refuse(formats::make_error(formats::ErrorKind::resource, folder.string(), "",
                                    "cannot create the folder: " + error.message(),
-                                   "choose a folder you may write to");
+                                   "choose a folder you may write to"));
     }
     std::string file = spec;
     std::replace_if(
         file.begin(), file.end(), [](char c) { return c == ':' || c == ','; }, '-');
     const std::filesystem::path path = folder / (file + ".exr");
-    const std::uint32_t height = environment->discs.empty() ? 512 : 2048;
-    const formats::Status status =
-        formats::write_exr(path, bake::rasterise_lat_long(*environment, 2 * height, height));
-    if (!status) {
-        return status.error();
-    }
+    const std::uint32_t height = environment.discs.empty() ? 512 : 2048;
+    require(formats::write_exr(path, bake::rasterise_lat_long(environment, 2 * height, height)));
     return path;
 }
 
@@ -73,31 +65,22 @@ int run(const ExampleCommand& options) {
         return list_all();
     }
     if (options.name.empty()) {
-        return report_error(formats::make_error(formats::ErrorKind::usage, "", "example",
-                                                "a name is needed", "opaline example --list"));
+        refuse_usage("example", "a name is needed", "opaline example --list");
     }
     if (bake::is_builtin(options.name)) {
         const auto path = write_light(options.name, options.folder.empty() ? "." : options.folder);
-        if (!path) {
-            return report_error(path.error());
-        }
-        fmt::print("{}\n", path->string());
+        fmt::print("{}\n", path.string());
         return kExitSuccess;
     }
     const std::string nearest = nearest_example(options.name);
     if (nearest != options.name) {
-        return report_error(
-            formats::make_error(formats::ErrorKind::usage, "", "",
-                                "there is no example '" + shorten(options.name) + "'",
-                                (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") +
-                                    std::string("opaline example --list names them")));
+        refuse_usage("", "there is no example '" + shorten(options.name) + "'",
+                     (nearest.empty() ? "" : "did you mean '" + nearest + "'? ") +
+                         std::string("opaline example --list names them"));
     }
-    const auto files =
-        bake::write_example(options.name, options.folder.empty() ? options.name : options.folder);
-    if (!files) {
-        return report_error(files.error());
-    }
-    for (const std::filesystem::path& file : *files) {
+    const auto files = require(
+        bake::write_example(options.name, options.folder.empty() ? options.name : options.folder));
+    for (const std::filesystem::path& file : files) {
         fmt::print("{}\n", file.string());
     }
     return kExitSuccess;

@@ -40,50 +40,41 @@ std::string name_of_light(const std::string& spec, const std::vector<runtime::Pa
     return unique;
 }
 
-formats::Result<std::vector<runtime::PageLight>> open_lights(
-    const std::vector<std::string>& specs) {
+std::vector<runtime::PageLight> open_lights(const std::vector<std::string>& specs) {
     std::vector<runtime::PageLight> lights;
     for (const std::string& spec : specs) {
-        auto light = open_light(spec, 0);
-        if (!light) return std::move(light).error();
-        lights.push_back({name_of_light(spec, lights), std::move(light->environment)});
+        auto light = require(open_light(spec, 0));
+        lights.push_back({name_of_light(spec, lights), std::move(light.environment)});
     }
     return lights;
 }
 
 int run(const ExportWebCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
-    if (auto status = check_folder(options.folder, runtime::is_page_file); !status) {
-        return report_error(status.error());
-    }
+    require(check_folder(options.folder, runtime::is_page_file));
     for (const std::string& light : options.lights) {
-        if (auto status = check_light(light); !status) return report_error(status.error());
+        require(check_light(light));
     }
-    const auto asset = open_asset(options.path);
-    if (!asset) return report_error(asset.error());
-    const formats::AssetView& view = asset->loaded.view;
+    const auto asset = require(open_asset(options.path));
+    const formats::AssetView& view = asset.loaded.view;
     const auto lights = open_lights(options.lights.empty() ? default_lights(view) : options.lights);
-    if (!lights) return report_error(lights.error());
-    const auto page =
-        runtime::make_web_page(view, *lights, std::filesystem::path(options.path).stem().string(),
-                               options.path, options.threads);
-    if (!page) return report_error(page.error());
+    const auto page = require(
+        runtime::make_web_page(view, lights, std::filesystem::path(options.path).stem().string(),
+                               options.path, options.threads));
     if (interrupted.load()) {
-        return report_error(formats::make_error(formats::ErrorKind::interrupted, "", "",
-                                                "interrupted", "nothing was written"));
+        refuse(formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
+                                   "nothing was written"));
     }
     std::vector<FolderFile> files;
     std::size_t bytes = 0;
-    for (const runtime::PageFile& file : *page) {
+    for (const runtime::PageFile& file : page) {
         files.push_back({file.name, file.text});
         bytes += file.text.size();
     }
-    if (auto status = write_folder(options.folder, files); !status) {
-        return report_error(status.error());
-    }
+    require(write_folder(options.folder, files));
     print_note(
         fmt::format("{}: {} with {} lights; open {}", printable(options.folder),
-                    format_bytes(static_cast<double>(bytes)), lights->size(),
+                    format_bytes(static_cast<double>(bytes)), lights.size(),
                     printable((std::filesystem::path(options.folder) / "index.html").string())));
     return kExitSuccess;
 }
@@ -94,9 +85,7 @@ void add_export_web_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<ExportWebCommand>();
     CLI::App* command =
         app.add_subcommand("export-web", "Write a folder that shows an .opal file in any browser");
-    command->add_option("file", options->path, "the .opal file")
-        ->required()
-        ->option_text("FILE.opal");
+    add_asset_argument(*command, options->path);
     command
         ->add_option("-o,--output", options->folder,
                      "the folder; one that exists must be empty or an earlier page, which is "
@@ -112,9 +101,7 @@ void add_export_web_command(CLI::App& app, Job& job) {
         ->option_text("ENV [studio, two skies, a sun]")
         ->take_all()
         ->allow_extra_args(false);
-    command->add_option("--threads", options->threads, "0: one per core")
-        ->transform(whole_number(0, 1024))
-        ->option_text("T [0]");
+    add_threads_option(*command, options->threads, "0: one per core");
     command->footer(
         "The page needs WebGL 2, but no server and no network: open DIR/index.html from the disk.\n"
         "It shows what `render` does; light turns, cloud layers move with a time.\n"

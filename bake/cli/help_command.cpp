@@ -15,9 +15,7 @@ int print_help(const CLI::App& app, const std::string& name) {
     const auto found =
         std::ranges::find(commands, name, [](const CLI::App* c) { return c->get_name(); });
     if (!name.empty() && found == commands.end()) {
-        return report_error(formats::make_error(formats::ErrorKind::usage, "", "",
-                                                describe_unknown_command(app, name),
-                                                "see `opaline --help`"));
+        refuse_usage("", describe_unknown_command(app, name), "see `opaline --help`");
     }
     // App::help() would explain the command that was given: this one.
     const CLI::App& subject = name.empty() ? app : **found;

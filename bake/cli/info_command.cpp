@@ -188,12 +188,11 @@ bool has_object(const Json& json, const char* key) {
 
 // Of noise that is subtracted little or nothing may be left: the interval says how much could be.
 void print_interval(const Json& error) {
-    if (!error.contains("ci95") || !error["ci95"].is_array() || error["ci95"].size() != 2 ||
-        !error["ci95"][0].is_number() || !error["ci95"][1].is_number()) {
-        return;
+    const Json ends = error.value("ci95", Json());
+    if (ends.is_array() && ends.size() == 2 && ends[0].is_number() && ends[1].is_number()) {
+        fmt::print(" (95 %: {:.2f} to {:.2f})", 100 * ends[0].get<double>(),
+                   100 * ends[1].get<double>());
     }
-    fmt::print(" (95 %: {:.2f} to {:.2f})", 100 * error["ci95"][0].get<double>(),
-               100 * error["ci95"][1].get<double>());
 }
 
 // The self-check's error at vertices.
@@ -201,27 +200,22 @@ void print_error(const Json& error) {
     const bool is_checked = text_of(error, "receivers_checked") != "0";
     fmt::print("measured error ");
     if (is_checked) {
-        fmt::print("{:.2f} % RMS", 100 * error["rms_relative"].get<double>());
+        fmt::print("{:.2f} % RMS", percent_of(error, "rms_relative"));
         print_interval(error);
     } else {
         fmt::print("none");
     }
     for (const auto& [key, place] :
          {std::pair{"at_receivers", "at receivers"}, {"between", "between them"}}) {
-        if (is_checked && error.contains(key) && error[key].is_object() &&
-            error[key].contains("rms_relative") && error[key]["rms_relative"].is_number()) {
-            fmt::print(", {:.2f} % {}", 100 * error[key]["rms_relative"].get<double>(), place);
-        }
+        const double own = percent_of(error.value(key, Json()), "rms_relative");
+        if (is_checked && !std::isnan(own)) fmt::print(", {:.2f} % {}", own, place);
     }
     fmt::print(" ({} receivers checked)", text_of(error, "receivers_checked"));
-    if (error.contains("not_measured") && error["not_measured"].is_array()) {
-        for (const Json& name : error["not_measured"]) {
-            fmt::print(", without {}", name.is_string() ? printable(name.get<std::string>()) : "?");
-        }
+    for (const Json& name : error.value("not_measured", Json::array())) {
+        fmt::print(", without {}", name.is_string() ? printable(name.get<std::string>()) : "?");
     }
-    if (error.contains("model_estimate") && error["model_estimate"].is_number() &&
-        error["model_estimate"].get<double>() > 0.0005) {
-        fmt::print("; the model, some {:.1f} %", 100 * error["model_estimate"].get<double>());
+    if (const double model = percent_of(error, "model_estimate"); model > 0.05) {
+        fmt::print("; the model, some {:.1f} %", model);
     }
     fmt::print("\n");
 }
@@ -235,7 +229,7 @@ void print_provenance(const Json& provenance) {
     if (provenance.contains("scene")) {
         fmt::print("scene sha256  {}\n", text_of(provenance["scene"], "sha256"));
     }
-    if (provenance.contains("knobs") && provenance["knobs"].is_object()) {
+    if (has_object(provenance, "knobs")) {
         const Json& knobs = provenance["knobs"];
         fmt::print("knobs         quality {}, cube map {}, coefficients {}, {} bits, seed {}\n",
                    text_of(provenance, "quality"), text_of(knobs, "cubemap"),
@@ -245,14 +239,12 @@ void print_provenance(const Json& provenance) {
     // A file of volumes or a layer alone has no receivers to check.
     const bool has_volume_error = has_object(provenance, "volume_error");
     const bool has_layer_error = has_object(provenance, "layer_error");
-    if (provenance.contains("error") && provenance["error"].is_object() &&
-        provenance["error"].contains("rms_relative") &&
-        provenance["error"]["rms_relative"].is_number() &&
-        !((has_volume_error || has_layer_error) &&
-          text_of(provenance["error"], "receivers_checked") == "0")) {
-        print_error(provenance["error"]);
+    const Json error = provenance.value("error", Json());
+    if (!std::isnan(percent_of(error, "rms_relative")) &&
+        !((has_volume_error || has_layer_error) && text_of(error, "receivers_checked") == "0")) {
+        print_error(error);
     }
-    if (provenance.contains("model_error") && provenance["model_error"].is_object()) {
+    if (has_object(provenance, "model_error")) {
         const Json& model = provenance["model_error"];
         fmt::print("model error   {:.1f} % RMS, {:+.1f} % in the mean, at {} receivers\n",
                    percent_of(model, "rms_relative"), percent_of(model, "bias"),
@@ -296,24 +288,17 @@ void print_volumes(const formats::VolumesView& volumes) {
 }
 
 int run(const InfoCommand& options) {
-    const auto asset = open_asset(options.path);
-    if (!asset) {
-        return report_error(asset.error());
-    }
+    const auto asset = require(open_asset(options.path));
     const auto receiver_errors =
-        formats::read_receiver_errors(asset->file.bytes(), asset->loaded, options.path);
-    if (!receiver_errors) {
-        return report_error(receiver_errors.error());
-    }
-    const Json info = describe(*asset, *receiver_errors);
+        require(formats::read_receiver_errors(asset.file.bytes(), asset.loaded, options.path));
+    const Json info = describe(asset, receiver_errors);
     if (options.json) {
         fmt::print("{}", json_text(info));
         return kExitSuccess;
     }
-    const formats::AssetView& view = asset->loaded.view;
+    const formats::AssetView& view = asset.loaded.view;
     fmt::print("{}: {}, .opal version {}\n", printable(options.path),
-               format_bytes(static_cast<double>(asset->file.bytes().size())),
-               formats::kOpalVersion);
+               format_bytes(static_cast<double>(asset.file.bytes().size())), formats::kOpalVersion);
     fmt::print("basis         Haar, cube map 6 x {0} x {0}\n", view.cubemap_size);
     fmt::print("transport     {} rows, {:.1f} details a row, {} bits\n", view.transport.rows(),
                view.transport.rows() == 0
@@ -345,7 +330,7 @@ int run(const InfoCommand& options) {
                 : std::string(", alpha ") + alpha_mode_of(view, i));
     }
     fmt::print("sections\n");
-    for (const formats::SectionEntry& section : asset->loaded.sections) {
+    for (const formats::SectionEntry& section : asset.loaded.sections) {
         fmt::print("  {}  {:>10}{}\n", formats::section_name(section.id),
                    format_bytes(static_cast<double>(section.stored_size)),
                    section.codec == 0
@@ -361,9 +346,7 @@ int run(const InfoCommand& options) {
 void add_info_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<InfoCommand>();
     CLI::App* command = app.add_subcommand("info", "Say what is inside an .opal file");
-    command->add_option("file", options->path, "the .opal file")
-        ->required()
-        ->option_text("FILE.opal");
+    add_asset_argument(*command, options->path);
     command->add_flag("--json", options->json, "print JSON");
     command->footer("Example:\n  opaline info scene.opal");
     command->callback([options, &job] { job = [options] { return run(*options); }; });

@@ -229,7 +229,7 @@ std::string light_help() {
            "sky:TURBIDITY,EL (`opaline example --list` explains them)";
 }
 
-formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::string& text) {
+formats::Vec3 parse_vec3(const std::string& option, const std::string& text) {
     float value[3] = {};
     const char* at = text.data();
     const char* const end = at + text.size();
@@ -238,9 +238,8 @@ formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::
         const bool last = i == 2;
         if (error != std::errc{} || !std::isfinite(value[i]) ||
             (last ? next != end : next == end || *next != ',')) {
-            return make_error(ErrorKind::usage, "", option,
-                              "'" + shorten(text) + "' is not a point",
-                              "give three numbers: x,y,z");
+            refuse_usage(option, "'" + shorten(text) + "' is not a point",
+                         "give three numbers: x,y,z");
         }
         at = next + 1;
     }

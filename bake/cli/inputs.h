@@ -51,6 +51,6 @@ bool is_scene_ending(std::string_view ending);
 std::string light_help();
 
 /// "x,y,z"; three finite numbers. Errors: usage, naming the option.
-formats::Result<formats::Vec3> parse_vec3(const std::string& option, const std::string& text);
+formats::Vec3 parse_vec3(const std::string& option, const std::string& text);
 
 }  // namespace opaline::cli

@@ -1,120 +1,11 @@
-#include <fmt/core.h>
-
-#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <exception>
-#include <new>
-#include <system_error>
 
-#include "bake/cli/command.h"
-#include "bake/cli/messages.h"
-#include "bake/cli/usage_errors.h"
-#include "bake/transport/embree_scene.h"
-#include "formats/opal/asset.h"
+#include "bake/cli/program.h"
 #include "formats/vdb/answer_vdb_request.h"
 
-namespace opaline::cli {
 namespace {
-
-#ifdef OPALINE_HAS_GL
-constexpr bool kHasGl = true;
-#else
-constexpr bool kHasGl = false;
-#endif
-#ifdef __clang__
-constexpr const char* kCompiler = "clang " __clang_version__;
-#else
-constexpr const char* kCompiler = "g++ " __VERSION__;
-#endif
-
-std::string describe_version() {
-    return fmt::format(
-        "opaline {}\n.opal files   version {}\nray tracer    {}\nbuild         {}, {}\n"
-        "OpenGL        {}",
-        OPALINE_VERSION, formats::kOpalVersion, bake::EmbreeScene::description(),
-        OPALINE_BUILD_TYPE, kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
-}
-
-int run_program(int argc, char** argv) {
-    CLI::App app(
-        "Opaline bakes how light travels through a scene, so that it can be relit in real time.");
-    app.name("opaline");
-    app.require_subcommand(1);
-    app.set_version_flag("-v,--version", describe_version);
-    MessageOptions messages;
-    app.fallthrough();  // the program's options stand before or after the command
-    app.add_flag("--strict", messages.strict,
-                 "warnings are errors: nothing is written, exit code 3");
-    app.add_flag("--quiet", messages.quiet, "print errors only: no warnings, summary or progress");
-    app.get_formatter()->column_width(38);
-    Job job;
-    // In the order in which they are met.
-    add_example_command(app, job);
-    add_bake_command(app, job);
-    add_render_command(app, job);
-#ifdef OPALINE_HAS_GL
-    add_view_command(app, job);
-#endif
-    add_export_web_command(app, job);
-    add_help_command(app, job);
-    add_plan_command(app, job);
-    add_info_command(app, job);
-    add_verify_command(app, job);
-    add_relight_command(app, job);
-    add_reference_command(app, job);
-    add_compare_command(app, job);
-    add_mie_command(app, job);
-    add_phase_command(app, job);
-    add_slab_command(app, job);
-    add_sweep_command(app, job);
-    app.footer(
-        "Exit codes: 0 success; 1 the job ran and the answer is no; 2 bad usage; 3 bad input "
-        "file;\n"
-        "4 resource or I/O failure; 130 interrupted.\n"
-        "Example:\n"
-        "  opaline example statue\n"
-        "  opaline bake statue/statue.gltf -o statue.opal\n"
-        "  opaline render statue.opal -o statue.png\n"
-        "`opaline help COMMAND` explains a command.");
-    for (CLI::App* command : app.get_subcommands({})) {
-        command->footer(command->get_footer() +
-                        "\nEvery command also takes --strict and --quiet (see `opaline --help`).");
-    }
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& help) {
-        return app.exit(help);  // prints what --help or --version asked for
-    } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "opaline: error: {}\n", describe_usage_error(app, error));
-        return kExitUsage;
-    }
-    set_message_options(messages);
-    const int code = job();
-    // Buffered data may still not fit where it goes.
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-        fmt::print(stderr, "opaline: error: standard output: cannot write: {}\n",
-                   std::strerror(errno));
-        return kExitResource;
-    }
-    return code;
-}
-
-int run_guarded(int argc, char** argv) {
-    try {
-        return run_program(argc, argv);
-    } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
-    } catch (const std::system_error& error) {
-        fmt::print(stderr, "opaline: error: {}\n", printable(error.what()));
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
-                   printable(error.what()));
-    }
-    return kExitResource;
-}
 
 // Everything of ours is written and destroyed. Libraries' statics are left alone: OpenVDB brings a
 // logger that starts four threads when it is loaded, and these race with its destruction.
@@ -127,7 +18,6 @@ int end_program(int code) {
 }
 
 }  // namespace
-}  // namespace opaline::cli
 
 int main(int argc, char** argv) {
     if (opaline::formats::is_vdb_request(argc, argv)) {
@@ -135,5 +25,5 @@ int main(int argc, char** argv) {
     }
     // A write past the limit of file sizes fails as one to a full disk does.
     std::signal(SIGXFSZ, SIG_IGN);
-    return opaline::cli::end_program(opaline::cli::run_guarded(argc, argv));
+    return end_program(opaline::cli::run_program(argc, argv));
 }

@@ -60,6 +60,10 @@ int report_error(const formats::Error& error) {
     return exit_code_of(error);
 }
 
+void refuse_usage(const std::string& option, std::string fault, std::string remedy) {
+    refuse(formats::make_error(ErrorKind::usage, "", option, std::move(fault), std::move(remedy)));
+}
+
 formats::Status report_warnings(const std::vector<Diagnostic>& warnings) {
     if (message_settings.strict && !warnings.empty()) {
         formats::Error error{ErrorKind::bad_input, warnings};

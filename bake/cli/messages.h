@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/cli/printable.h"
@@ -25,6 +26,26 @@ int exit_code_of(const formats::Error& error);
 
 /// Prints everything an error says to stderr; returns its exit code.
 int report_error(const formats::Error& error);
+
+/// Ends a command: the program reports the error and exits with its code.
+struct Refusal {
+    formats::Error error;
+};
+[[noreturn]] inline void refuse(formats::Error error) {
+    throw Refusal{std::move(error)};
+}
+/// What an option asks for cannot be done.
+[[noreturn]] void refuse_usage(const std::string& option, std::string fault, std::string remedy);
+
+/// The value. Throws Refusal where there is none.
+template <class T>
+T require(formats::Result<T> result) {
+    if (!result) refuse(std::move(result).error());
+    return std::move(result).value();
+}
+inline void require(formats::Status status) {
+    if (!status) refuse(std::move(status).error());
+}
 
 /// Prints warnings to stderr, unless quiet. Where warnings are errors: prints nothing and returns
 /// them as an error (bad_input); the caller must then write no output.

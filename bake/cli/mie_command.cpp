@@ -31,53 +31,47 @@ struct MieCommand {
                 *density_option = nullptr, *forward_angle_option = nullptr;
 };
 
-formats::Error refuse_option(std::string option, std::string fault, std::string remedy) {
-    return formats::make_error(formats::ErrorKind::usage, "", std::move(option), std::move(fault),
-                               std::move(remedy));
-}
-
-formats::Status check_options(const MieCommand& options) {
+void check_options(const MieCommand& options) {
     const DropletOptions& droplets = options.droplets;
     const bool by_size = options.size_parameter_option->count() > 0;
     const bool by_radius = options.radius_option->count() > 0;
     const bool by_droplets = droplets.effective_radius_option->count() > 0;
     if (by_size + by_radius + by_droplets != 1) {
-        return refuse_option("mie",
-                             by_size || by_radius || by_droplets
-                                 ? "one sphere or one distribution is computed, not several"
-                                 : "nothing to compute",
-                             "give one of --size-parameter, --radius and --effective-radius");
+        refuse_usage("mie",
+                     by_size || by_radius || by_droplets
+                         ? "one sphere or one distribution is computed, not several"
+                         : "nothing to compute",
+                     "give one of --size-parameter, --radius and --effective-radius");
     }
     if (by_size && droplets.substance.wavelength_option->count() > 0) {
-        return refuse_option("--wavelength", "a size parameter holds the wavelength already",
-                             "give it with --radius or --effective-radius");
+        refuse_usage("--wavelength", "a size parameter holds the wavelength already",
+                     "give it with --radius or --effective-radius");
     }
     if (by_size && options.droplets.substance.index.empty()) {
-        return refuse_option("--index", "it is missing",
-                             "a size parameter has no wavelength to look it up at");
+        refuse_usage("--index", "it is missing",
+                     "a size parameter has no wavelength to look it up at");
     }
     if (by_radius && droplets.substance.wavelengths.size() > 1) {
-        return refuse_option("--wavelength", "one sphere takes one", "give --effective-radius");
+        refuse_usage("--wavelength", "one sphere takes one", "give --effective-radius");
     }
     if (by_droplets) {
-        return formats::ok_status();
+        return;
     }
     for (const CLI::Option* option :
          {droplets.gamma_option, droplets.size_step_option, droplets.threads_option,
           options.density_option, options.forward_angle_option}) {
         if (option->count() > 0) {
-            return refuse_option(option->get_name(), "one sphere has no such value",
-                                 "give it with --effective-radius alone");
+            refuse_usage(option->get_name(), "one sphere has no such value",
+                         "give it with --effective-radius alone");
         }
     }
-    return formats::ok_status();
 }
 
 Json index_json(std::complex<double> index) {
     return {index.real(), index.imag()};
 }
 
-formats::Result<Json> describe_sphere(const MieCommand& options) {
+Json describe_sphere(const MieCommand& options) {
     Json all;
     double x = options.size_parameter, wavelength = 0;
     const bool by_radius = options.radius_option->count() > 0;
@@ -89,15 +83,10 @@ formats::Result<Json> describe_sphere(const MieCommand& options) {
         all["wavelength_m"] = wavelength;
     }
     const auto index = index_at(options.droplets.substance, wavelength);
-    if (!index) {
-        return index.error();
-    }
-    if (auto status = bake::check_sphere(x, *index); !status) {
-        return std::move(status).error();
-    }
-    const bake::MieEfficiencies q = bake::sphere_efficiencies(x, *index);
+    require(bake::check_sphere(x, index));
+    const bake::MieEfficiencies q = bake::sphere_efficiencies(x, index);
     all["size_parameter"] = x;
-    all["index"] = index_json(*index);
+    all["index"] = index_json(index);
     all["q_ext"] = q.q_ext;
     all["q_sca"] = q.q_sca;
     all["q_back"] = q.q_back;
@@ -107,14 +96,14 @@ formats::Result<Json> describe_sphere(const MieCommand& options) {
 }
 
 /// The angle of the forward peak for all wavelengths [rad]: different ones would colour its edge.
-formats::Result<double> choose_forward_angle(const MieCommand& options,
-                                             const std::vector<bake::DropletOptics>& optics) {
+double choose_forward_angle(const MieCommand& options,
+                            const std::vector<bake::DropletOptics>& optics) {
     if (options.forward_angle != "auto") {
         const auto degrees = parse_number(options.forward_angle);
         if (!degrees || *degrees < 0 || *degrees > 90) {
-            return refuse_option("--forward-angle",
-                                 "it is neither auto nor a number of degrees from 0 to 90",
-                                 "give 0 for no peak");
+            refuse_usage("--forward-angle",
+                         "it is neither auto nor a number of degrees from 0 to 90",
+                         "give 0 for no peak");
         }
         return *degrees * std::numbers::pi / 180;
     }
@@ -152,28 +141,22 @@ Json describe_wavelength(const bake::DropletDistribution& droplets,
             {"error", describe_error(optics)}};
 }
 
-formats::Result<Json> describe_distribution(const MieCommand& options) {
+Json describe_distribution(const MieCommand& options) {
     std::vector<double> wavelengths = options.droplets.substance.wavelengths;
     if (wavelengths.empty()) {
         wavelengths = {650 / 1e9, 550 / 1e9, 450 / 1e9};
     }
     const auto optics = average_droplets(options.droplets, wavelengths);
-    if (!optics) {
-        return optics.error();
-    }
-    const auto angle = choose_forward_angle(options, *optics);
-    if (!angle) {
-        return angle.error();
-    }
+    const auto angle = choose_forward_angle(options, optics);
     const bake::DropletDistribution& droplets = options.droplets.droplets;
     Json all;
     all["droplets"] = describe_droplets(droplets);
     all["droplets"]["density_per_m3"] = droplets.density;
     all["droplets"]["geometric_section_m2"] = bake::mean_geometric_section(droplets);
     all["droplets"]["liquid_water_kg_per_m3"] = bake::liquid_water_content(droplets);
-    all["forward_angle_deg"] = *angle * 180 / std::numbers::pi;
-    for (const bake::DropletOptics& one : *optics) {
-        all["wavelengths"].push_back(describe_wavelength(droplets, one, *angle));
+    all["forward_angle_deg"] = angle * 180 / std::numbers::pi;
+    for (const bake::DropletOptics& one : optics) {
+        all["wavelengths"].push_back(describe_wavelength(droplets, one, angle));
     }
     return all;
 }
@@ -203,25 +186,20 @@ void print_lines(const std::vector<Json>& rows) {
 }
 
 int run(const MieCommand& options) {
-    if (const auto status = check_options(options); !status) {
-        return report_error(status.error());
-    }
+    check_options(options);
     const bool by_droplets = options.droplets.effective_radius_option->count() > 0;
-    const auto all = by_droplets ? describe_distribution(options) : describe_sphere(options);
-    if (!all) {
-        return report_error(all.error());
-    }
+    const Json all = by_droplets ? describe_distribution(options) : describe_sphere(options);
     if (options.format == TextFormat::json) {
-        fmt::print("{}", json_text(*all));
+        fmt::print("{}", json_text(all));
     } else if (by_droplets) {
         std::vector<Json> rows;
-        for (const Json& wavelength : (*all)["wavelengths"]) {
+        for (const Json& wavelength : all["wavelengths"]) {
             rows.push_back(wavelength);
-            rows.back()["forward_angle_deg"] = (*all)["forward_angle_deg"];
+            rows.back()["forward_angle_deg"] = all["forward_angle_deg"];
         }
         print_lines(rows);
     } else {
-        print_lines({*all});
+        print_lines({all});
     }
     return kExitSuccess;
 }

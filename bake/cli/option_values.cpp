@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string_view>
 
@@ -104,6 +105,22 @@ CLI::Validator file_name() {
     return make_check([](std::string& text) {
         return text.empty() ? std::string("the name is empty; give the path of a file") : "";
     });
+}
+
+CLI::Option* add_threads_option(CLI::App& command, unsigned& threads, const std::string& help) {
+    return command.add_option("--threads", threads, help)
+        ->transform(whole_number(0, 1024))
+        ->option_text("T [0]");
+}
+
+CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
+    return command.add_option("--seed", seed, help)
+        ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+        ->option_text("S [0]");
+}
+
+void add_asset_argument(CLI::App& command, std::string& path) {
+    command.add_option("file", path, "the .opal file")->required()->option_text("FILE.opal");
 }
 
 CLI::Validator term_list() {

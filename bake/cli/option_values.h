@@ -32,6 +32,17 @@ CLI::Validator whole_number(std::uint64_t least, std::uint64_t most);
 /// The path of a file; not empty.
 CLI::Validator file_name();
 
+/// `--threads`; 0: one per core.
+CLI::Option* add_threads_option(
+    CLI::App& command, unsigned& threads,
+    const std::string& help = "0: one per core; the result is the same for any number");
+
+/// `--seed`.
+CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help);
+
+/// The `.opal` file that a command reads.
+void add_asset_argument(CLI::App& command, std::string& path);
+
 /// Components of radiance: not empty, as nothing would stand for all of them.
 CLI::Validator term_list();
 

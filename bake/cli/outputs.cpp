@@ -7,7 +7,7 @@
 #include <map>
 #include <utility>
 
-#include "formats/opal/atomic_file.h"
+#include "bake/cli/messages.h"
 
 namespace opaline::cli {
 namespace {
@@ -101,6 +101,23 @@ Status check_outputs(std::span<const OutputFile> outputs,
         taken.add(identity, output.option);
     }
     return formats::ok_status();
+}
+
+std::vector<formats::AtomicFile> create_outputs(std::span<const OutputFile> outputs) {
+    std::vector<formats::AtomicFile> files;
+    for (const OutputFile& output : outputs) {
+        files.push_back(require(formats::AtomicFile::create(output.path)));
+    }
+    return files;
+}
+
+void commit_outputs(std::span<formats::AtomicFile> files) {
+    for (formats::AtomicFile& file : files) {
+        require(file.sync());
+    }
+    for (formats::AtomicFile& file : files) {
+        require(file.commit());
+    }
 }
 
 std::string ending_of(const std::filesystem::path& path) {

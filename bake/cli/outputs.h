@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/opal/atomic_file.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {
@@ -21,6 +22,12 @@ struct OutputFile {
 /// Errors: usage.
 formats::Status check_outputs(std::span<const OutputFile> outputs,
                               std::span<const std::filesystem::path> inputs);
+
+/// Outputs before the work, so that an unwritable folder fails at once. Throws Refusal.
+std::vector<formats::AtomicFile> create_outputs(std::span<const OutputFile> outputs);
+
+/// All of them or none, as far as the disk allows: what may fail comes before the first name.
+void commit_outputs(std::span<formats::AtomicFile> files);
 
 /// The ending of a path in lower case, its dot included: ".png" of "A.PNG".
 std::string ending_of(const std::filesystem::path& path);

@@ -11,7 +11,6 @@ namespace opaline::cli {
 
 using formats::ErrorKind;
 using formats::make_error;
-using formats::Status;
 using formats::TermSet;
 
 void add_path_integration_options(CLI::App& command, PathIntegrationOptions& options) {
@@ -38,58 +37,52 @@ void add_path_integration_options(CLI::App& command, PathIntegrationOptions& opt
             ->option_text("on|off [on]");
 }
 
-Status check_method(const PathIntegrationOptions& options,
-                    std::span<const MonteCarloOption> monte_carlo, TermSet terms) {
+void check_method(const PathIntegrationOptions& options,
+                  std::span<const MonteCarloOption> monte_carlo, TermSet terms) {
     if (!options.is_chosen()) {
-        return options.renormalise_option->count() == 0
-                   ? formats::ok_status()
-                   : make_error(ErrorKind::usage, "", "--renormalise",
-                                "Monte Carlo needs no renormalisation",
-                                "leave it out, or give --method path-integration");
+        if (options.renormalise_option->count() == 0) return;
+        refuse_usage("--renormalise", "Monte Carlo needs no renormalisation",
+                     "leave it out, or give --method path-integration");
     }
     for (const MonteCarloOption& option : monte_carlo) {
         if (option.is_given) {
-            return make_error(ErrorKind::usage, "", option.name,
-                              "means nothing with --method path-integration, which makes pictures "
-                              "without random paths",
-                              "leave out one of the two");
+            refuse_usage(option.name,
+                         "means nothing with --method path-integration, which makes pictures "
+                         "without random paths",
+                         "leave out one of the two");
         }
     }
     if (!formats::has_any(terms, bake::kPathTerms)) {
-        return make_error(ErrorKind::usage, "", "--terms",
-                          "path integration computes none of these",
-                          "choose among " + formats::term_names(bake::kPathTerms, ", "));
+        refuse_usage("--terms", "path integration computes none of these",
+                     "choose among " + formats::term_names(bake::kPathTerms, ", "));
     }
-    return formats::ok_status();
 }
 
 namespace {
 
 // Fidelity "paper" of a scene's volumes: what it contradicts, and a warning.
-Status check_paper(const PathIntegrationOptions& options, const formats::Scene& scene) {
+void check_paper(const PathIntegrationOptions& options, const formats::Scene& scene) {
     if (!bake::has_paper_fidelity(scene)) {
-        return formats::ok_status();
+        return;
     }
     if (options.renormalise && options.renormalise_option->count() > 0) {
-        return make_error(ErrorKind::usage, scene.volumes.front().name, "--renormalise",
+        refuse(make_error(ErrorKind::usage, scene.volumes.front().name, "--renormalise",
                           "the paper's formulas have no renormalisation, and fidelity is 'paper'",
-                          "leave it out, or make the fidelity physical");
+                          "leave it out, or make the fidelity physical"));
     }
-    return report_warnings({formats::make_warning(
+    require(report_warnings({formats::make_warning(
         scene.volumes.front().name, "fidelity",
         "the formulas of [Premoze2003] as printed err more than the corrected ones: light that is "
         "scattered often turns too fast, and even light is not kept",
-        "make the fidelity physical, but for the paper's figures")});
+        "make the fidelity physical, but for the paper's figures")}));
 }
 
 }  // namespace
 
-Status make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
-                         const PathIntegrationOptions& options, const bake::Context& context) {
+void make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
+                       const PathIntegrationOptions& options, const bake::Context& context) {
     const formats::Scene& scene = space.scene.surfaces.scene();
-    if (auto status = check_paper(options, scene); !status) {
-        return status;
-    }
+    check_paper(options, scene);
     bake::PathImageOptions wanted;
     wanted.renormalise = options.renormalise;
     wanted.terms = space.options.terms;
@@ -97,23 +90,16 @@ Status make_path_picture(const PathPicture& picture, const bake::PathSpace& spac
         wanted.rays = picture.rays;
     }
     const auto image =
-        bake::make_path_image(space.scene, space.light, picture.camera, wanted, context);
-    if (!image) {
-        return image.error();
-    }
-    const formats::Image& radiance = image->radiance;
-    if (auto status = write_picture(
-            picture.output, {radiance.width, radiance.height, radiance.pixel}, picture.exposure);
-        !status) {
-        return status;
-    }
+        require(bake::make_path_image(space.scene, space.light, picture.camera, wanted, context));
+    const formats::Image& radiance = image.radiance;
+    require(write_picture(picture.output, {radiance.width, radiance.height, radiance.pixel},
+                          picture.exposure));
     print_note(fmt::format(
         "{}: path integration{}, {} rays for each of {} pixels, {}, of which {} "
         "before the first pixel",
         printable(picture.output), bake::has_paper_fidelity(scene) ? " with fidelity paper" : "",
-        wanted.rays, radiance.pixel.size(), format_seconds(image->seconds),
-        format_seconds(image->preparation_seconds)));
-    return formats::ok_status();
+        wanted.rays, radiance.pixel.size(), format_seconds(image.seconds),
+        format_seconds(image.preparation_seconds)));
 }
 
 }  // namespace opaline::cli

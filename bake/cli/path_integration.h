@@ -33,8 +33,8 @@ struct MonteCarloOption {
 
 /// Refuses options that mean nothing for the method, and terms that it does not compute.
 /// Errors: usage.
-formats::Status check_method(const PathIntegrationOptions& options,
-                             std::span<const MonteCarloOption> monte_carlo, formats::TermSet terms);
+void check_method(const PathIntegrationOptions& options,
+                  std::span<const MonteCarloOption> monte_carlo, formats::TermSet terms);
 
 /// A picture to write.
 struct PathPicture {
@@ -47,8 +47,7 @@ struct PathPicture {
 /// Computes the picture by path integration, writes it and prints a summary; warns of fidelity
 /// "paper". Precondition: check_path_scene. Errors: usage, for --renormalise on with fidelity
 /// "paper"; and of writing.
-formats::Status make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
-                                  const PathIntegrationOptions& options,
-                                  const bake::Context& context);
+void make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
+                       const PathIntegrationOptions& options, const bake::Context& context);
 
 }  // namespace opaline::cli

@@ -22,7 +22,6 @@
 namespace opaline::cli {
 namespace {
 
-using formats::make_error;
 using Json = nlohmann::ordered_json;
 
 struct PhaseCommand {
@@ -37,11 +36,8 @@ struct PhaseCommand {
 constexpr unsigned kMostTerms = 25, kCubemapSize = 16;
 constexpr std::size_t kSingularValues = 100;  ///< shown; the errors take in all of them
 
-formats::Status check_options(const PhaseCommand& options) {
+void check_options(const PhaseCommand& options) {
     using Type = PhaseType;
-    const auto refuse = [](const char* option, std::string fault, const char* remedy) {
-        return make_error(formats::ErrorKind::usage, "", option, std::move(fault), remedy);
-    };
     struct Rule {
         const CLI::Option* option;
         const char* name;
@@ -58,20 +54,18 @@ formats::Status check_options(const PhaseCommand& options) {
     for (const Rule& rule : rules) {
         const bool given = rule.option->count() > 0, needed = options.phase.type == rule.type;
         if (given != needed) {
-            return refuse(rule.name, given ? "this type has no such value" : "it is missing",
-                          rule.remedy);
+            refuse_usage(rule.name, given ? "this type has no such value" : "it is missing",
+                         rule.remedy);
         }
     }
     if (options.phase.type != PhaseType::mie) {
         for (const std::string& name : given_droplet_options(options.phase.droplets)) {
-            return refuse(name.c_str(), "this type has no such value",
-                          "give it with --type mie alone");
+            refuse_usage(name, "this type has no such value", "give it with --type mie alone");
         }
     } else if (options.samples_option->count() > 0) {
-        return refuse("--samples", "this type has rows of its own",
-                      "leave it out: they crowd where the function bends");
+        refuse_usage("--samples", "this type has rows of its own",
+                     "leave it out: they crowd where the function bends");
     }
-    return formats::ok_status();
 }
 
 /// Everything that is printed, in order.
@@ -124,39 +118,27 @@ void print_csv(const Json& all) {
 }
 
 int run(const PhaseCommand& options) {
-    if (const auto status = check_options(options); !status) {
-        return report_error(status.error());
-    }
+    check_options(options);
     if (!options.table_output.empty()) {
         const std::vector<std::filesystem::path> inputs(options.phase.table.empty() ? 0 : 1,
                                                         options.phase.table);
         const OutputFile output{"--table-output", options.table_output, {}};
-        if (const auto status = check_outputs({&output, 1}, inputs); !status) {
-            return report_error(status.error());
-        }
+        require(check_outputs({&output, 1}, inputs));
     }
     const auto subject = make_phase_subject(options.phase);
-    if (!subject) {
-        return report_error(subject.error());
-    }
-    const bake::PhaseMaps maps = bake::factor_phase(subject->p, kCubemapSize, 0);
+    const bake::PhaseMaps maps = bake::factor_phase(subject.p, kCubemapSize, 0);
     constexpr double kMostRowError = 0.01;
     if (maps.row_error > kMostRowError) {
-        const formats::Status status = report_warnings({formats::make_warning(
+        require(report_warnings({formats::make_warning(
             options.phase.table, "",
             fmt::format("the lobe is too narrow for a cube map of {} x {} texels, whose rows "
                         "integrate to 1 within {:.2g} only",
                         kCubemapSize, kCubemapSize, maps.row_error),
-            "use the harmonics' errors, not those of the svd")});
-        if (!status) {
-            return report_error(status.error());
-        }
+            "use the harmonics' errors, not those of the svd")}));
     }
-    const Json all = describe(*subject, maps, options.samples);
+    const Json all = describe(subject, maps, options.samples);
     if (!options.table_output.empty()) {
-        if (const auto status = write_phase_table(options.table_output, *subject); !status) {
-            return report_error(status.error());
-        }
+        require(write_phase_table(options.table_output, subject));
     }
     if (options.format == TextFormat::csv) {
         print_csv(all);

@@ -20,26 +20,20 @@ constexpr unsigned kDegrees = 32;
 /// Rows of a table: what is left out is within this of the line between its neighbours, relative.
 constexpr double kRowTolerance = 2e-3;
 
-formats::Result<PhaseSubject> make_droplet_subject(const DropletOptions& options) {
+PhaseSubject make_droplet_subject(const DropletOptions& options) {
     const auto& given = options.substance.wavelengths;
     const std::vector<double> wavelengths = given.empty() ? std::vector{550 / 1e9} : given;
     const auto weights = weights_of(options.substance, wavelengths.size());
-    if (!weights) {
-        return weights.error();
-    }
     auto optics = average_droplets(options, wavelengths);
-    if (!optics) {
-        return std::move(optics).error();
-    }
     const bake::DropletOptics droplets =
-        optics->size() == 1 ? optics->front() : bake::mix_wavelengths(*optics, *weights);
+        optics.size() == 1 ? optics.front() : bake::mix_wavelengths(optics, weights);
     PhaseSubject subject;
     subject.json = {{"type", "mie"},
                     {"wavelength_m", droplets.wavelength},
                     {"index", {droplets.index.real(), droplets.index.imag()}}};
     if (wavelengths.size() > 1) {
         subject.json["wavelengths_m"] = wavelengths;
-        subject.json["weights"] = *weights;
+        subject.json["weights"] = weights;
     }
     subject.json.update(describe_droplets(options.droplets));
     subject.error = describe_error(droplets);
@@ -92,7 +86,7 @@ std::vector<double> choose_cosines(const std::function<double(double)>& p) {
 
 }  // namespace
 
-formats::Result<PhaseSubject> make_phase_subject(const PhaseChoice& choice) {
+PhaseSubject make_phase_subject(const PhaseChoice& choice) {
     using Type = PhaseType;
     if (choice.type == PhaseType::mie) {
         return make_droplet_subject(choice.droplets);
@@ -110,11 +104,7 @@ formats::Result<PhaseSubject> make_phase_subject(const PhaseChoice& choice) {
         phase.rms_angle = static_cast<float>(choice.rms_angle);
         json = {{"type", "gaussian"}, {"rms_angle", choice.rms_angle}};
     } else if (choice.type == Type::tabulated) {
-        auto table = formats::read_phase_table(choice.table);
-        if (!table) {
-            return std::move(table).error();
-        }
-        phase = std::move(*table);
+        phase = require(formats::read_phase_table(choice.table));
         json = {{"type", "table"}, {"file", choice.table}};
     } else if (choice.type == Type::rayleigh) {
         phase.type = PhaseFunction::Type::rayleigh;

@@ -36,7 +36,7 @@ struct PhaseSubject {
 };
 
 /// Errors: of the table's reader, of droplets as `average_droplets`.
-formats::Result<PhaseSubject> make_phase_subject(const PhaseChoice& choice);
+PhaseSubject make_phase_subject(const PhaseChoice& choice);
 
 /// A table as media files name them (formats/media/README.md), which has the function back within
 /// 0.2 %. Errors: as write_file_atomically.

@@ -46,51 +46,35 @@ std::vector<formats::Diagnostic> describe_media_faults(const formats::Scene& sce
 int run(const PlanCommand& options) {
     const bake::EffectTable& effects = bake::all_effects();
     const auto wanted = parse_effects(options.scene);
-    if (!wanted) {
-        return report_error(wanted.error());
-    }
-    const auto knobs = bake::resolve_knobs(effects, *wanted);
-    if (!knobs) {
-        return report_error(knobs.error());
-    }
-    const auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::largest);
-    if (!imported) {
-        return report_error(imported.error());
-    }
-    if (auto status = bake::check_effects(effects, imported->scene, *knobs); !status) {
-        return report_error(status.error());
-    }
+    const auto knobs = require(bake::resolve_knobs(effects, wanted));
+    const auto imported = open_scene(options.scene, knobs, formats::CloudDetail::largest);
+    require(bake::check_effects(effects, imported.scene, knobs));
     bake::Context context;
     context.threads = options.scene.bake.threads;
     const unsigned threads = bake::thread_count(context);
     const auto evened =
-        bake::takes_even_media(effects, *knobs) ? bake::even_media(imported->scene) : std::nullopt;
-    const formats::Scene& scene = evened ? evened->scene : imported->scene;
+        bake::takes_even_media(effects, knobs) ? bake::even_media(imported.scene) : std::nullopt;
+    const formats::Scene& scene = evened ? evened->scene : imported.scene;
     const bake::SceneFacts facts = bake::inspect_scene(scene);
-    auto plan = bake::plan_bake(effects, scene, facts, *knobs);
-    bake::VolumePlan planned = bake::plan_volumes(scene, *knobs);
+    auto plan = bake::plan_bake(effects, scene, facts, knobs);
+    bake::VolumePlan planned = bake::plan_volumes(scene, knobs);
     std::vector<bake::PlanEntry> volumes = std::move(planned.entries);
-    std::ranges::copy(bake::plan_layers(scene, *knobs).entries, std::back_inserter(volumes));
-    const bake::EmitterPlan emitters = bake::plan_emitters(scene, *knobs);
-    if (auto status = bake::check_lamps(
-            scene, bake::count_emitters(emitters.lamps, bake::count_glowing(planned.layouts)));
-        !status) {
-        return report_error(status.error());
-    }
+    std::ranges::copy(bake::plan_layers(scene, knobs).entries, std::back_inserter(volumes));
+    const bake::EmitterPlan emitters = bake::plan_emitters(scene, knobs);
+    require(bake::check_lamps(
+        scene, bake::count_emitters(emitters.lamps, bake::count_glowing(planned.layouts))));
     std::ranges::copy(emitters.entries, std::back_inserter(volumes));
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
     if (evened) {
         warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());
     }
     for (formats::Diagnostic& unmet :
-         bake::describe_unmet({effects, scene, facts, *knobs, plan, volumes}, *wanted)) {
+         bake::describe_unmet({effects, scene, facts, knobs, plan, volumes}, wanted)) {
         warnings.push_back(std::move(unmet));
     }
-    if (auto status = report_warnings(warnings); !status) {
-        return report_error(status.error());
-    }
+    require(report_warnings(warnings));
     const bake::StageRates rates = find_machine_rates().rates;
-    bake::Knobs budget = *knobs;
+    bake::Knobs budget = knobs;
     budget.model_error = bake::find_model_error(plan);
     const bake::CostRequest request{effects, scene, facts, budget, rates, threads};
     const bake::CostPrediction cost = bake::predict_costs(request, plan, volumes);

@@ -10,57 +10,54 @@ namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
-using formats::Status;
 
 // Paths do not know cloud layers.
-Status check_layers(const formats::Scene& scene) {
+void check_layers(const formats::Scene& scene) {
     if (scene.layers.empty()) {
-        return formats::ok_status();
+        return;
     }
     if (scene.primitives.empty() && scene.volumes.empty()) {
-        return make_error(ErrorKind::bad_input, scene.source, "clouds",
+        refuse(make_error(ErrorKind::bad_input, scene.source, "clouds",
                           "the scene is a cloud layer alone, which no paths are traced through",
                           "a bake measures a layer's error itself; opaline slab computes layers by "
-                          "photons");
+                          "photons"));
     }
-    return report_warnings({formats::make_warning(
+    require(report_warnings({formats::make_warning(
         scene.source, "clouds", "the cloud layer is left out: no paths are traced through it",
-        "compare with a bake without it")});
+        "compare with a bake without it")}));
 }
 
 // A line to a light without an extent is not bent by a smooth boundary, and no path meets such a
 // light.
-Status check_lights(const formats::Scene& scene) {
+void check_lights(const formats::Scene& scene) {
     const auto bends = [](const formats::Material& m) {
         return m.medium && !bake::is_matched(m.medium->eta) && !bake::has_rough_boundary(*m.medium);
     };
     if (scene.lights.empty() ||
         std::none_of(scene.materials.begin(), scene.materials.end(), bends)) {
-        return formats::ok_status();
+        return;
     }
-    return report_warnings(
+    require(report_warnings(
         {formats::make_warning(scene.source, "KHR_lights_punctual",
                                "light of points, spots and directional lights does not pass smooth "
                                "boundaries that refract: "
                                "bodies are lit by it as far as other surfaces reflect it",
-                               "give the light a surface: a small mesh with emissiveFactor")});
+                               "give the light a surface: a small mesh with emissiveFactor")}));
 }
 
 }  // namespace
 
-formats::Status check_traceable(const formats::Scene& scene) {
-    auto status = check_layers(scene);
-    return status ? check_lights(scene) : status;
+void check_traceable(const formats::Scene& scene) {
+    check_layers(scene);
+    check_lights(scene);
 }
 
-formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene) {
+bake::OrientedBodies close_bodies(const formats::Scene& scene) {
     bake::OrientedBodies bodies = bake::orient_bodies(scene);
     for (bake::BodySurface& surface : bodies.surfaces) {
         surface.open_edges = 0;  // paths are counted that are lost there
     }
-    if (auto status = report_warnings(bake::describe_faults(scene, bodies.surfaces)); !status) {
-        return std::move(status).error();
-    }
+    require(report_warnings(bake::describe_faults(scene, bodies.surfaces)));
     return bodies;
 }
 

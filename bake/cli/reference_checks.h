@@ -8,9 +8,9 @@ namespace opaline::cli {
 
 /// Whether paths can be traced through anything of the scene; warns of what they leave out. Errors:
 /// bad_input (a cloud layer alone), and warnings that count as errors.
-formats::Status check_traceable(const formats::Scene& scene);
+void check_traceable(const formats::Scene& scene);
 
 /// The scene's bodies as a bake sees them, with warnings about faults of their meshes.
-formats::Result<bake::OrientedBodies> close_bodies(const formats::Scene& scene);
+bake::OrientedBodies close_bodies(const formats::Scene& scene);
 
 }  // namespace opaline::cli

@@ -33,7 +33,6 @@ namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
-using formats::Status;
 
 // Nothing: textures are looked up at points.
 std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceOptions& options,
@@ -51,12 +50,6 @@ std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceOptions& o
         options.texture_filter == "limited" ? 0.7f : std::numeric_limits<float>::infinity();
     filtering.extent = 2 * glm::length(surfaces.half_size());
     return std::make_unique<bake::TextureFiltering>(std::move(filtering));
-}
-
-// So that an unwritable folder is found out before the work.
-Status try_to_create(const std::string& path) {
-    const auto file = formats::AtomicFile::create(path);
-    return file ? formats::ok_status() : Status(file.error());
 }
 
 // A sun behind a smooth boundary is met by few paths or none, which says nothing of the error.
@@ -83,77 +76,52 @@ void print_summary(const ReferenceOptions& options, const bake::Estimate& estima
         describe_noise(estimate)));
 }
 
-Status report_lost_paths(const ReferenceOptions& options, const bake::Estimate& estimate) {
+void report_lost_paths(const ReferenceOptions& options, const bake::Estimate& estimate) {
     constexpr double kNoticed = 1e-4;
     const double paths =
         static_cast<double>(estimate.pixel.size()) * static_cast<double>(estimate.samples);
     const double lost = static_cast<double>(estimate.lost) / std::max(paths, 1.0);
     if (lost <= kNoticed) {
-        return formats::ok_status();
+        return;
     }
-    return report_warnings({formats::make_warning(
+    require(report_warnings({formats::make_warning(
         options.scene, "",
         fmt::format("{:.2g} % of the paths left a body that is not closed: what leaves through its "
                     "holes counts as bright as the rest",
                     100 * lost),
-        "close the holes of its mesh")});
+        "close the holes of its mesh")}));
 }
 
-Status make_table(const ReferenceOptions& options, const bake::PathSpace& space,
-                  const bake::EstimateOptions& wanted, const bake::Context& context) {
+void make_table(const ReferenceOptions& options, const bake::PathSpace& space,
+                const bake::EstimateOptions& wanted, const bake::Context& context) {
     std::optional<glm::vec3> eye;
     if (!options.camera.eye.empty()) {
         const auto point = parse_vec3("--eye", options.camera.eye);
-        if (!point) {
-            return point.error();
-        }
-        eye = {point->x, point->y, point->z};
+        eye = {point.x, point.y, point.z};
     }
     const auto receivers =
         bake::choose_receivers(space.scene, options.receivers, options.seed, eye);
-    const auto estimate = bake::estimate_receivers(space, receivers, wanted, context);
-    if (!estimate) {
-        return estimate.error();
-    }
-    if (auto status = report_lost_paths(options, *estimate); !status) {
-        return status;
-    }
-    if (auto status = bake::write_receiver_csv(options.output, receivers, *estimate); !status) {
-        return status;
-    }
-    print_summary(options, *estimate);
-    return formats::ok_status();
+    const auto estimate = require(bake::estimate_receivers(space, receivers, wanted, context));
+    report_lost_paths(options, estimate);
+    require(bake::write_receiver_csv(options.output, receivers, estimate));
+    print_summary(options, estimate);
 }
 
-Status make_picture(const ReferenceOptions& options, const bake::PathSpace& space,
-                    const bake::EstimateOptions& wanted, const bake::Context& context) {
+void make_picture(const ReferenceOptions& options, const bake::PathSpace& space,
+                  const bake::EstimateOptions& wanted, const bake::Context& context) {
     const formats::Asset stand_in = make_stand_in(space.scene.surfaces.scene());
     const auto camera = make_camera(options.camera, stand_in.view());
-    if (!camera) {
-        return camera.error();
-    }
     if (options.paths.is_chosen()) {
         return make_path_picture(
-            {options.output, options.exposure.value_or(0.0f), options.samples, *camera}, space,
+            {options.output, options.exposure.value_or(0.0f), options.samples, camera}, space,
             options.paths, context);
     }
-    const auto image = bake::estimate_image(space, *camera, wanted, context);
-    if (!image) {
-        return image.error();
-    }
-    if (auto status = report_lost_paths(options, image->estimate); !status) {
-        return status;
-    }
-    if (auto status = formats::write_exr(variance_path(options.output), image->variance); !status) {
-        return status;
-    }
-    const runtime::Picture picture{image->mean.width, image->mean.height, image->mean.pixel};
-    if (auto status = write_picture(options.output, picture, options.exposure.value_or(0.0f));
-        !status) {
-        return status;
-    }
-    print_summary(options, image->estimate);
-    return formats::ok_status();
+    const auto image = require(bake::estimate_image(space, camera, wanted, context));
+    report_lost_paths(options, image.estimate);
+    require(formats::write_exr(variance_path(options.output), image.variance));
+    const runtime::Picture picture{image.mean.width, image.mean.height, image.mean.pixel};
+    require(write_picture(options.output, picture, options.exposure.value_or(0.0f)));
+    print_summary(options, image.estimate);
 }
 
 bake::EstimateOptions estimate_options(const ReferenceOptions& options) {
@@ -174,85 +142,51 @@ int run(const ReferenceOptions& options) {
     if (options.max_depth > 0) {
         paths.max_depth = options.max_depth;
     }
-    const auto terms = formats::parse_terms(options.terms, formats::TermSet::all, "--terms");
-    if (!terms) {
-        return report_error(terms.error());
-    }
-    paths.terms = *terms;
-    if (auto status = check_light(options.light); !status) {
-        return report_error(status.error());
-    }
+    paths.terms = require(formats::parse_terms(options.terms, formats::TermSet::all, "--terms"));
+    require(check_light(options.light));
     const MonteCarloOption monte_carlo[] = {{"--receivers", options.receivers > 0},
                                             {"--seconds", options.seconds > 0},
                                             {"--max-depth", options.max_depth > 0},
                                             {"--texture-filter", options.texture_filter != "none"},
                                             {"--seed", options.seed > 0}};
-    if (auto status = check_method(options.paths, monte_carlo, paths.terms); !status) {
-        return report_error(status.error());
-    }
-    if (auto status = check_reference_paths(options, {}); !status) {
-        return report_error(status.error());
-    }
+    check_method(options.paths, monte_carlo, paths.terms);
+    check_reference_paths(options, {});
     const auto imported =
-        open_scene(options.scene,
-                   {options.metres_per_unit,
-                    {options.allowed_folders.begin(), options.allowed_folders.end()},
-                    {},
-                    options.smooth_normals},
-                   options.media, formats::CloudDetail::fields);
-    if (!imported) {
-        return report_error(imported.error());
-    }
-    if (auto status = check_reference_paths(options, imported->scene.inputs); !status) {
-        return report_error(status.error());
-    }
-    if (auto status = check_traceable(imported->scene); !status) {
-        return report_error(status.error());
-    }
+        require(open_scene(options.scene,
+                           {options.metres_per_unit,
+                            {options.allowed_folders.begin(), options.allowed_folders.end()},
+                            {},
+                            options.smooth_normals},
+                           options.media, formats::CloudDetail::fields));
+    check_reference_paths(options, imported.scene.inputs);
+    check_traceable(imported.scene);
     if (options.paths.is_chosen()) {
-        if (auto status = bake::check_path_scene(imported->scene); !status) {
-            return report_error(status.error());
-        }
+        require(bake::check_path_scene(imported.scene));
     }
-    const auto light = open_light(options.light, options.rotate_light);
-    if (!light) {
-        return report_error(light.error());
+    const auto light = require(open_light(options.light, options.rotate_light));
+    // So that an unwritable folder is found out before the work.
+    require(formats::AtomicFile::create(options.output));
+    require(check_threads(options.threads));
+    if (options.receivers > 0 && imported.scene.primitives.empty()) {
+        refuse(make_error(ErrorKind::usage, options.scene, "--receivers",
+                          "the scene has no vertices to choose from",
+                          "make a picture: end the name in .exr or .png"));
     }
-    if (auto status = try_to_create(options.output); !status) {
-        return report_error(status.error());
-    }
-    if (auto status = check_threads(options.threads); !status) {
-        return report_error(status.error());
-    }
-    if (options.receivers > 0 && imported->scene.primitives.empty()) {
-        return report_error(make_error(ErrorKind::usage, options.scene, "--receivers",
-                                       "the scene has no vertices to choose from",
-                                       "make a picture: end the name in .exr or .png"));
-    }
-    const auto bodies = close_bodies(imported->scene);
-    if (!bodies) {
-        return report_error(bodies.error());
-    }
-    const auto scene = bake::make_reference_scene(bodies->scene ? *bodies->scene : imported->scene,
-                                                  options.threads);
-    if (!scene) {
-        return report_error(scene.error());
-    }
-    const runtime::Rotation& r = light->rotation;
-    const bake::LightSampler sampler =
-        bake::make_light_sampler(light->environment, glm::mat3(glm::vec3(r.x.x, r.x.y, r.x.z),
-                                                               glm::vec3(r.y.x, r.y.y, r.y.z),
-                                                               glm::vec3(r.z.x, r.z.y, r.z.z)));
+    const auto bodies = close_bodies(imported.scene);
+    const auto scene = require(
+        bake::make_reference_scene(bodies.scene ? *bodies.scene : imported.scene, options.threads));
+    const runtime::Rotation& r = light.rotation;
+    const bake::LightSampler sampler = bake::make_light_sampler(
+        light.environment, glm::mat3(glm::vec3(r.x.x, r.x.y, r.x.z), glm::vec3(r.y.x, r.y.y, r.y.z),
+                                     glm::vec3(r.z.x, r.z.y, r.z.z)));
     bake::Context context;
     context.threads = options.threads;
     context.cancel = &interrupted;
     context.on_progress = make_progress_printer(options.progress, "reference");
     const bake::EstimateOptions wanted = estimate_options(options);
-    const auto filtering = make_filtering(options, scene->surfaces, wanted.samples);
-    const bake::PathSpace space{*scene, sampler, paths, filtering.get()};
-    const Status status =
-        (options.receivers > 0 ? make_table : make_picture)(options, space, wanted, context);
-    if (!status) return report_error(status.error());
+    const auto filtering = make_filtering(options, scene.surfaces, wanted.samples);
+    const bake::PathSpace space{scene, sampler, paths, filtering.get()};
+    (options.receivers > 0 ? make_table : make_picture)(options, space, wanted, context);
     if (context.on_progress) context.on_progress({"reference", 1, 1});
     return kExitSuccess;
 }

@@ -14,7 +14,6 @@ namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
-using formats::Status;
 
 void add_estimate_options(CLI::App& command, ReferenceOptions& options) {
     command
@@ -57,14 +56,8 @@ void add_estimate_options(CLI::App& command, ReferenceOptions& options) {
                     "it where the density of directions varies, from the second scattering on)")
         ->check(CLI::IsMember({"none", "footprint", "limited"}))
         ->option_text("none|footprint|limited [none]");
-    command.add_option("--seed", options.seed, "another one gives other noise")
-        ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-        ->option_text("S [0]");
-    command
-        .add_option("--threads", options.threads,
-                    "0: one per core; the result is the same for any number")
-        ->transform(whole_number(0, 1024))
-        ->option_text("T [0]");
+    add_seed_option(command, options.seed, "another one gives other noise");
+    add_threads_option(command, options.threads);
 }
 
 }  // namespace
@@ -73,40 +66,36 @@ std::string variance_path(const std::string& output) {
     return std::filesystem::path(output).replace_extension(".var.exr").string();
 }
 
-Status check_reference_paths(const ReferenceOptions& options,
-                             std::vector<std::filesystem::path> inputs) {
+void check_reference_paths(const ReferenceOptions& options,
+                           std::vector<std::filesystem::path> inputs) {
     const bool table = ending_of(options.output) == ".csv";
     std::vector<OutputFile> outputs{{"--output", options.output, {".exr", ".png", ".csv"}}};
     if (!table && !options.paths.is_chosen()) {
         outputs.push_back({"the variance beside it", variance_path(options.output), {}});
     }
     inputs.insert(inputs.end(), {options.scene, options.media, options.light});
-    if (auto status = check_outputs(outputs, inputs); !status) {
-        return status;
-    }
+    require(check_outputs(outputs, inputs));
     if (options.texture_filter != "none" && (table || options.seconds > 0)) {
-        return make_error(ErrorKind::usage, "", "--texture-filter",
-                          table ? "only the paths of a picture have footprints"
-                                : "footprints depend on the number of paths, which --seconds "
-                                  "leaves open",
-                          table ? "leave it out, or end the output's name in .exr or .png"
-                                : "give --spp instead of --seconds");
+        refuse_usage("--texture-filter",
+                     table ? "only the paths of a picture have footprints"
+                           : "footprints depend on the number of paths, which --seconds "
+                             "leaves open",
+                     table ? "leave it out, or end the output's name in .exr or .png"
+                           : "give --spp instead of --seconds");
     }
     if (table != (options.receivers > 0)) {
-        return make_error(ErrorKind::usage, options.output, "",
+        refuse(make_error(ErrorKind::usage, options.output, "",
                           table ? "a table needs receivers" : "receivers go into a table",
                           table
                               ? "give --receivers N, or end the name in .exr or .png for a picture"
-                              : "end the name in .csv, or leave out --receivers");
+                              : "end the name in .csv, or leave out --receivers"));
     }
     for (const CLI::Option* option : options.picture_options) {
         if (table && option->count() > 0) {
-            return make_error(ErrorKind::usage, "", option->get_name(),
-                              "a table of receivers is no picture",
-                              "leave it out; --eye says where receivers are seen from");
+            refuse_usage(option->get_name(), "a table of receivers is no picture",
+                         "leave it out; --eye says where receivers are seen from");
         }
     }
-    return formats::ok_status();
 }
 
 void add_reference_options(CLI::App& command, ReferenceOptions& options) {

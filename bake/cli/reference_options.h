@@ -36,7 +36,7 @@ std::string variance_path(const std::string& output);
 
 /// Outputs that are inputs or each other, and options that say nothing of a table or a picture.
 /// `inputs` that the scene has besides. Errors: usage.
-formats::Status check_reference_paths(const ReferenceOptions& options,
-                                      std::vector<std::filesystem::path> inputs);
+void check_reference_paths(const ReferenceOptions& options,
+                           std::vector<std::filesystem::path> inputs);
 
 }  // namespace opaline::cli

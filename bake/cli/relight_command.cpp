@@ -102,89 +102,59 @@ std::vector<bake::VolumeRow> make_volume_rows(const formats::VolumesView& volume
     return rows;
 }
 
-formats::Status write_volumes(const RelightCommand& options, const formats::VolumesView& volumes,
-                              const runtime::LightVector& light,
-                              const runtime::ShadeOptions& shading) {
+void write_volumes(const RelightCommand& options, const formats::VolumesView& volumes,
+                   const runtime::LightVector& light, const runtime::ShadeOptions& shading) {
     if (volumes.empty()) {
-        return formats::ok_status();
+        return;
     }
     if (ending_of(options.output) != ".csv") {
         print_note("opaline: the file has volumes, which only .csv outputs show");
-        return formats::ok_status();
+        return;
     }
     const runtime::VolumeLight lit = runtime::relight_volumes(
         volumes, light,
         {.terms = shading.terms, .emitters = shading.emitters, .threads = shading.threads});
-    return bake::write_volume_csv(volumes_path(options.output),
-                                  make_volume_rows(volumes, lit, shading.eye));
+    require(bake::write_volume_csv(volumes_path(options.output),
+                                   make_volume_rows(volumes, lit, shading.eye)));
 }
 
 int run(const RelightCommand& options) {
     const std::filesystem::path inputs[] = {options.path, options.light};
-    if (auto status = check_outputs(list_outputs(options), inputs); !status) {
-        return report_error(status.error());
-    }
+    require(check_outputs(list_outputs(options), inputs));
     runtime::ShadeOptions shading;
     shading.threads = options.threads;
     if (!options.eye.empty()) {
-        const auto eye = parse_vec3("--eye", options.eye);
-        if (!eye) {
-            return report_error(eye.error());
-        }
-        shading.eye = *eye;
+        shading.eye = parse_vec3("--eye", options.eye);
     }
-    const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
-    if (!terms) {
-        return report_error(terms.error());
-    }
-    if (auto status = check_light(options.light); !status) {
-        return report_error(status.error());
-    }
-    const auto asset = open_asset(options.path);
-    if (!asset) {
-        return report_error(asset.error());
-    }
-    if (auto status = runtime::check_terms(asset->loaded.view, *terms, options.path); !status) {
-        return report_error(status.error());
-    }
-    const auto emitters = parse_emitters(asset->loaded.view.emitters, options.emitters);
-    if (!emitters) {
-        return report_error(emitters.error());
-    }
-    const auto light = open_light(options.light, options.rotate_light);
-    if (!light) {
-        return report_error(light.error());
-    }
-    const formats::AssetView& view = asset->loaded.view;
-    const LightWithLayers layers = light_layers_of(view, *light, options.time, options.threads);
-    const OpenedLight mirrored = layers.mirrored(*light);
+    const auto terms =
+        require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
+    require(check_light(options.light));
+    const auto asset = require(open_asset(options.path));
+    require(runtime::check_terms(asset.loaded.view, terms, options.path));
+    const auto emitters = require(parse_emitters(asset.loaded.view.emitters, options.emitters));
+    const auto light = require(open_light(options.light, options.rotate_light));
+    const formats::AssetView& view = asset.loaded.view;
+    const LightWithLayers layers = light_layers_of(view, light, options.time, options.threads);
+    const OpenedLight mirrored = layers.mirrored(light);
     const runtime::SpecularNeeds needs = runtime::specular_needs(view);
     const runtime::SpecularLight specular = runtime::make_specular_light(
         mirrored.environment, needs, mirrored.rotation, options.threads);
-    shading.terms = *terms;
-    shading.emitters = {*emitters, has_all(*terms, formats::TermSet::baked)};
+    shading.terms = terms;
+    shading.emitters = {emitters, has_all(terms, formats::TermSet::baked)};
     shading.specular = needs.any() ? &specular : nullptr;
     if (!view.clouds.empty() && view.receivers() == 0 && view.volumes.empty()) {
         print_note("opaline: the file has a cloud layer alone, which opaline render shows");
     }
     std::vector<formats::Rgb> radiance(view.receivers());
-    const PartVectors parts = project_parts(layers, *light, view.cubemap_size, options.threads);
+    const PartVectors parts = project_parts(layers, light, view.cubemap_size, options.threads);
     const runtime::PartLights lights = parts.lights();
     runtime::shade(view, lights, radiance, shading);
-    if (auto status =
-            write_volumes(options, view.volumes, lights.light[lights.of_volumes], shading);
-        !status) {
-        return report_error(status.error());
-    }
+    write_volumes(options, view.volumes, lights.light[lights.of_volumes], shading);
     const std::vector<bake::RelightRow> rows = make_rows(view, radiance);
     const std::string ending = ending_of(options.output);
-    const formats::Status status =
-        ending == ".csv"   ? bake::write_relight_csv(options.output, rows)
-        : ending == ".ply" ? bake::write_relight_ply(options.output, row_positions(view), rows)
-                           : bake::write_relight_exr(options.output, rows);
-    if (!status) {
-        return report_error(status.error());
-    }
+    require(ending == ".csv"   ? bake::write_relight_csv(options.output, rows)
+            : ending == ".ply" ? bake::write_relight_ply(options.output, row_positions(view), rows)
+                               : bake::write_relight_exr(options.output, rows));
     if (options.json) {
         print_json(options, view, radiance);
     }
@@ -197,9 +167,7 @@ void add_relight_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<RelightCommand>();
     CLI::App* command = app.add_subcommand(
         "relight", "Evaluate the outgoing radiance of every receiver under a light");
-    command->add_option("file", options->path, "the .opal file")
-        ->required()
-        ->option_text("FILE.opal");
+    add_asset_argument(*command, options->path);
     command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
     command
         ->add_option("-o,--output", options->output,
@@ -229,9 +197,7 @@ void add_relight_command(CLI::App& app, Job& job) {
         ->option_text("all|LIST [all]");
     add_rotate_light_option(*command, options->rotate_light);
     add_time_option(*command, options->time);
-    command->add_option("--threads", options->threads, "0: one per core")
-        ->transform(whole_number(0, 1024))
-        ->option_text("T [0]");
+    add_threads_option(*command, options->threads, "0: one per core");
     command->add_flag("--json", options->json,
                       "print JSON: receivers, mean and maximum of their radiance");
     command->footer(

@@ -38,28 +38,24 @@ struct RenderCommand {
 };
 
 // Of options that set frames apart.
-formats::Status check_motion(const RenderCommand& options, const formats::AssetView& view) {
-    const auto refuse = [](const char* option, const char* fault, const char* remedy) {
-        return formats::make_error(formats::ErrorKind::usage, "", option, fault, remedy);
-    };
+void check_motion(const RenderCommand& options, const formats::AssetView& view) {
     const char* const one = "there is one frame only";
     if (options.turn && options.frame.frames == 1) {
-        return refuse("--turn", one, "give --frames, or --azimuth for another side");
+        refuse_usage("--turn", one, "give --frames, or --azimuth for another side");
     }
     if (options.time_step && options.frame.frames == 1) {
-        return refuse("--time-step", one, "give --frames, or --time for another time");
+        refuse_usage("--time-step", one, "give --frames, or --time for another time");
     }
     if (options.time_step && view.clouds.empty()) {
-        return refuse("--time-step", "the file has no cloud layer, and nothing else moves",
-                      "leave it out: --frames alone turns the camera");
+        refuse_usage("--time-step", "the file has no cloud layer, and nothing else moves",
+                     "leave it out: --frames alone turns the camera");
     }
-    return formats::ok_status();
 }
 
 // All frames, or those of one time.
-int draw_at(const RenderCommand& options, const formats::AssetView& view, const OpenedLight& light,
-            const runtime::Camera& camera, Shown shown, double time, std::uint32_t end,
-            Drawing& drawing) {
+void draw_at(const RenderCommand& options, const formats::AssetView& view, const OpenedLight& light,
+             const runtime::Camera& camera, Shown shown, double time, std::uint32_t end,
+             Drawing& drawing) {
     const LightWithLayers layers = light_layers_of(view, light, time, options.frame.threads);
     if (layers.layers) print_seconds(options.frame, "layer light", layers.seconds);
     if (options.frame.stats && layers.parts) {
@@ -74,27 +70,21 @@ int draw_at(const RenderCommand& options, const formats::AssetView& view, const 
         project_parts(layers, has_rows ? light : none, view.cubemap_size, options.frame.threads)};
     print_seconds(options.frame, "light vector",
                   std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-    return draw_frames(options.frame, view, picture_light, camera, shown, end, drawing);
+    draw_frames(options.frame, view, picture_light, camera, shown, end, drawing);
 }
 
 // The errors by receiver in place of light.
-int draw_errors(const RenderCommand& options, const OpenedAsset& asset) {
-    const auto errors = stored_errors(asset, options.path);
-    if (!errors) {
-        return report_error(errors.error());
-    }
+void draw_errors(const RenderCommand& options, const OpenedAsset& asset) {
+    const auto errors = require(stored_errors(asset, options.path));
     const auto camera = make_camera(options.camera, asset.loaded.view);
-    if (!camera) {
-        return report_error(camera.error());
-    }
     const ErrorMap map =
-        make_error_map(asset.loaded.view, *errors, static_cast<float>(options.error_white));
+        make_error_map(asset.loaded.view, errors, static_cast<float>(options.error_white));
     RenderCommand plain = options;
     plain.frame.exposure = 0;
     plain.frame.tone_map = runtime::ToneMap::none;
     Drawing drawing;
-    return draw_at(plain, map.view_of(asset.loaded.view), error_map_light(), *camera, {}, 0,
-                   options.frame.frames, drawing);
+    draw_at(plain, map.view_of(asset.loaded.view), error_map_light(), camera, {}, 0,
+            options.frame.frames, drawing);
 }
 
 int run(const RenderCommand& options) {
@@ -103,62 +93,33 @@ int run(const RenderCommand& options) {
         outputs.push_back({"--output", frame_path(options.frame, frame), {".png", ".exr"}});
     }
     const std::filesystem::path inputs[] = {options.path, options.light};
-    if (auto status = check_outputs(outputs, inputs); !status) {
-        return report_error(status.error());
-    }
-    const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
-    if (!terms) {
-        return report_error(terms.error());
-    }
-    if (auto status = check_light(options.light); !status) {
-        return report_error(status.error());
-    }
-    const auto asset = open_asset(options.path);
-    if (!asset) {
-        return report_error(asset.error());
-    }
+    require(check_outputs(outputs, inputs));
+    const auto terms =
+        require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
+    require(check_light(options.light));
+    const auto asset = require(open_asset(options.path));
     if (options.error_white > 0) {
-        return draw_errors(options, *asset);
+        draw_errors(options, asset);
+        return kExitSuccess;
     }
-    formats::AssetView view = asset->loaded.view;
+    formats::AssetView view = asset.loaded.view;
     bake::ShortRows short_rows;
     if (options.coefficients) {
-        auto made = bake::shorten_rows(view, *options.coefficients);
-        if (!made) {
-            return report_error(made.error());
-        }
-        short_rows = std::move(*made);
+        short_rows = require(bake::shorten_rows(view, *options.coefficients));
         view = short_rows.view_of(view);
     }
-    if (auto status = runtime::check_terms(view, *terms, options.path); !status) {
-        return report_error(status.error());
-    }
-    const auto emitters = parse_emitters(view.emitters, options.emitters);
-    if (!emitters) {
-        return report_error(emitters.error());
-    }
-    if (auto status = check_motion(options, view); !status) {
-        return report_error(status.error());
-    }
+    require(runtime::check_terms(view, terms, options.path));
+    const auto emitters = require(parse_emitters(view.emitters, options.emitters));
+    check_motion(options, view);
     const auto camera = make_camera(options.camera, view);
-    if (!camera) {
-        return report_error(camera.error());
-    }
-    const auto light = open_light(options.light, options.rotate_light);
-    if (!light) {
-        return report_error(light.error());
-    }
+    const auto light = require(open_light(options.light, options.rotate_light));
     const std::uint32_t frames = options.frame.frames;
     const std::uint32_t step = options.time_step ? 1 : frames;  // frames of one time
     Drawing drawing;
     while (drawing.frames < frames) {
         const double time = options.time + options.time_step.value_or(0) * drawing.frames;
-        const int code =
-            draw_at(options, view, *light, *camera, show_terms(*terms, view, *emitters), time,
-                    drawing.frames + step, drawing);
-        if (code != kExitSuccess) {
-            return code;
-        }
+        draw_at(options, view, light, camera, show_terms(terms, view, emitters), time,
+                drawing.frames + step, drawing);
     }
     if (options.frame.on_progress) options.frame.on_progress({"render", 1, 1});
     if (options.frame.stats) {
@@ -173,9 +134,7 @@ int run(const RenderCommand& options) {
 void add_render_command(CLI::App& app, Job& job) {
     auto options = std::make_shared<RenderCommand>();
     CLI::App* command = app.add_subcommand("render", "Make pictures of an .opal file, headless");
-    command->add_option("file", options->path, "the .opal file")
-        ->required()
-        ->option_text("FILE.opal");
+    add_asset_argument(*command, options->path);
     command->add_option("--light", options->light, light_help())->option_text("ENV [studio]");
     command
         ->add_option("-o,--output", options->frame.output,
@@ -217,9 +176,7 @@ void add_render_command(CLI::App& app, Job& job) {
                      "and exposure change nothing")
         ->check(real_number(1e-6, 10))
         ->option_text("E");
-    command->add_option("--threads", options->frame.threads, "0: one per core")
-        ->transform(whole_number(0, 1024))
-        ->option_text("T [0]");
+    add_threads_option(*command, options->frame.threads, "0: one per core");
     command->add_flag("--stats", options->frame.stats, "print timings");
     add_progress_option(*command, options->progress);
     group_options(

@@ -8,6 +8,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/memory_limit.h"
+#include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/effects/effects.h"
 #include "bake/pipeline/predict_memory.h"
@@ -126,16 +127,9 @@ void add_subject_options(CLI::App& command, SceneOptions& options) {
                 "it, however little it adds, and without shortcuts; or a list of effects, of ") +
                 "which this version has: " + list_effects(", "))
         ->option_text("auto|all|LIST [auto]");
-    command
-        .add_option("--seed", options.bake.seed,
-                    "of everything random: which receivers the error is measured at")
-        ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-        ->option_text("S [0]");
-    command
-        .add_option("--threads", options.bake.threads,
-                    "0: one per core; the result is the same for any number")
-        ->transform(whole_number(0, 1024))
-        ->option_text("T [0]");
+    add_seed_option(command, options.bake.seed,
+                    "of everything random: which receivers the error is measured at");
+    add_threads_option(command, options.bake.threads);
     command
         .add_option("--metres-per-unit", options.metres_per_unit,
                     "length of one unit of the scene file")
@@ -188,9 +182,8 @@ void add_error_option(CLI::App& command, SceneOptions& options) {
         ->option_text("E");
 }
 
-formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
-                                                   const bake::Knobs& knobs,
-                                                   formats::CloudDetail detail) {
+formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs& knobs,
+                                  formats::CloudDetail detail) {
     bake::Context context;
     context.threads = options.bake.threads;
     const unsigned threads = bake::thread_count(context);
@@ -204,29 +197,20 @@ formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
     const auto check_size = [&](const formats::SceneCounts& counts) {
         return check(bake::count_memory(counts));
     };
-    auto imported = open_scene(options.scene,
-                               {options.metres_per_unit,
-                                {options.allowed_folders.begin(), options.allowed_folders.end()},
-                                check_size,
-                                options.smooth_normals},
-                               options.media, detail);
-    if (!imported) {
-        return imported;
-    }
-    if (auto status = bake::check_bakeable(imported->scene); !status) {
-        return std::move(status).error();
-    }
-    if (auto status = check(bake::count_memory(bake::all_effects(), imported->scene, knobs));
-        !status) {
-        return std::move(status).error();
-    }
-    if (auto status = check_threads(threads); !status) {
-        return std::move(status).error();
-    }
+    auto imported =
+        require(open_scene(options.scene,
+                           {options.metres_per_unit,
+                            {options.allowed_folders.begin(), options.allowed_folders.end()},
+                            check_size,
+                            options.smooth_normals},
+                           options.media, detail));
+    require(bake::check_bakeable(imported.scene));
+    require(check(bake::count_memory(bake::all_effects(), imported.scene, knobs)));
+    require(check_threads(threads));
     return imported;
 }
 
-formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
+bake::BakeOptions parse_effects(const SceneOptions& options) {
     // Of later versions; whoever names one should not take it for a slip of the pen.
     constexpr std::array<std::string_view, 1> kLater{"filtering"};
     bake::BakeOptions wanted = options.bake;
@@ -237,9 +221,9 @@ formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
         wanted.simulate_all = true;
         return wanted;
     }
-    const auto refuse = [](std::string fault) {
-        return formats::make_error(formats::ErrorKind::usage, "", "--effects", std::move(fault),
-                                   "give auto, all, or some of " + list_effects(","));
+    const auto refuse_name = [](std::string fault) {
+        refuse_usage("--effects", std::move(fault),
+                     "give auto, all, or some of " + list_effects(","));
     };
     std::stringstream list(options.effects);
     for (std::string name; std::getline(list, name, ',');) {
@@ -249,15 +233,15 @@ formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options) {
         });
         if (!is_here) {
             const bool is_later = std::find(kLater.begin(), kLater.end(), name) != kLater.end();
-            return refuse(name == "all" || name == "auto"
-                              ? "'" + name + "' stands by itself, not in a list"
-                          : is_later ? "this version does not simulate '" + name + "'"
-                                     : "there is no effect named '" + name + "'");
+            refuse_name(name == "all" || name == "auto"
+                            ? "'" + name + "' stands by itself, not in a list"
+                        : is_later ? "this version does not simulate '" + name + "'"
+                                   : "there is no effect named '" + name + "'");
         }
         wanted.effects.push_back(name);
     }
     if (wanted.effects.empty()) {
-        return refuse("the list is empty");
+        refuse_name("the list is empty");
     }
     return wanted;
 }

@@ -41,13 +41,12 @@ void add_error_option(CLI::App& command, SceneOptions& options);
 
 /// Opens the scene and its media (open_scene). What a bake with these knobs is predicted to need
 /// more memory for than there is, is refused before it is built. Errors: also resource.
-formats::Result<formats::ImportedScene> open_scene(const SceneOptions& options,
-                                                   const bake::Knobs& knobs,
-                                                   formats::CloudDetail detail);
+formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs& knobs,
+                                  formats::CloudDetail detail);
 
 /// The options of the bake with the effects to simulate: none named for `auto`, nor for `all`,
 /// which forces every one. Errors: usage, for those that are unknown or that this version does not
 /// simulate.
-formats::Result<bake::BakeOptions> parse_effects(const SceneOptions& options);
+bake::BakeOptions parse_effects(const SceneOptions& options);
 
 }  // namespace opaline::cli

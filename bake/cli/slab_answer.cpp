@@ -30,7 +30,7 @@ struct SlabPhase {
     bake::AngularTable table;  ///< for views
 };
 
-formats::Result<SlabPhase> make_slab_phase(const SlabQuestion& options) {
+SlabPhase make_slab_phase(const SlabQuestion& options) {
     // For twice the streams, and the peak that those leave.
     const unsigned moments = 4 * options.streams + 1;
     if (options.phase.empty()) {
@@ -39,18 +39,15 @@ formats::Result<SlabPhase> make_slab_phase(const SlabQuestion& options) {
             {bake::expand_henyey_greenstein(options.g, moments).lambda, options.albedo},
             henyey_greenstein_table(options.g)};
     }
-    const auto table = formats::read_phase_table(options.phase);
-    if (!table) {
-        return table.error();
-    }
-    const std::vector<double> cosine(table->cosine.begin(), table->cosine.end());
-    const std::vector<double> value(table->value.begin(), table->value.end());
+    const auto table = require(formats::read_phase_table(options.phase));
+    const std::vector<double> cosine(table.cosine.begin(), table.cosine.end());
+    const std::vector<double> value(table.value.begin(), table.value.end());
     bake::SlabMedium medium{{1.0}, options.albedo};
     if (options.method != SlabMethod::monte_carlo) {
-        medium.moment = bake::expand_phase(*table, moments).lambda;
+        medium.moment = bake::expand_phase(table, moments).lambda;
     }
     return SlabPhase{bake::CosineSampler::tabulated(cosine, value), std::move(medium),
-                     angular_table(*table)};
+                     angular_table(table)};
 }
 
 std::string order_name(std::size_t order, bool is_rest) {
@@ -98,11 +95,8 @@ Json solve_by_adding(const SlabQuestion& options, const bake::SlabMedium& medium
     return all;
 }
 
-formats::Result<Json> solve_by_photons(const SlabQuestion& options,
-                                       const bake::CosineSampler& phase) {
-    if (auto status = check_threads(options.threads); !status) {
-        return std::move(status).error();
-    }
+Json solve_by_photons(const SlabQuestion& options, const bake::CosineSampler& phase) {
+    require(check_threads(options.threads));
     bake::Context context;
     context.threads = options.threads;
     context.cancel = &catch_interrupts();
@@ -112,8 +106,8 @@ formats::Result<Json> solve_by_photons(const SlabQuestion& options,
                    options.seed, options.orders + 1, 0, 0, 0, options.eta},
                   context);
     if (walk.photons < options.photons) {
-        return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                   "nothing was printed");
+        refuse(formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
+                                   "nothing was printed"));
     }
     Json all;
     const auto add = [](Json& to, const char* name, const bake::SlabEstimate& estimate) {
@@ -185,24 +179,21 @@ Json solve_by_model(const SlabQuestion& options, const SlabPhase& phase) {
 
 }  // namespace
 
-formats::Result<Json> answer_slab(const SlabQuestion& options) {
+Json answer_slab(const SlabQuestion& options) {
     const auto phase = make_slab_phase(options);
-    if (!phase) {
-        return phase.error();
-    }
     switch (options.method) {
         case SlabMethod::monte_carlo:
-            return solve_by_photons(options, phase->sampler);
+            return solve_by_photons(options, phase.sampler);
         case SlabMethod::model:
-            return solve_by_model(options, *phase);
+            return solve_by_model(options, phase);
         case SlabMethod::table:
-            return solve_by_table(options, *phase);
+            return solve_by_table(options, phase);
         case SlabMethod::adding:
             break;
     }
-    Json all = solve_by_adding(options, phase->medium);
+    Json all = solve_by_adding(options, phase.medium);
     if (options.views > 0) {
-        all["views"] = solver_views(views_of(options, *phase), options.streams);
+        all["views"] = solver_views(views_of(options, phase), options.streams);
     }
     return all;
 }

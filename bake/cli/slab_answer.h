@@ -21,6 +21,6 @@ struct SlabQuestion {
 
 /// Shares of the light, all together and in by_order; `views` (slab_views.h) if asked for. Errors:
 /// what reading the phase function finds, too many threads, `interrupted`.
-formats::Result<nlohmann::ordered_json> answer_slab(const SlabQuestion& question);
+nlohmann::ordered_json answer_slab(const SlabQuestion& question);
 
 }  // namespace opaline::cli

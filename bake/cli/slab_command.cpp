@@ -32,60 +32,51 @@ struct SlabCommand : SlabQuestion {
 constexpr double kMostWalkDepth = 1e3;
 constexpr unsigned kMostStreams = 128, kMostOrders = 64;
 
-formats::Error refuse_slab_option(const std::string& option, std::string fault,
-                                  std::string remedy) {
-    return formats::make_error(formats::ErrorKind::usage, "", option, std::move(fault),
-                               std::move(remedy));
-}
-
-formats::Status check_slab_options(const SlabCommand& options) {
+void check_slab_options(const SlabCommand& options) {
     const bool by_g = options.g_option->count() > 0, by_table = options.phase_option->count() > 0;
     if (by_g == by_table) {
-        return refuse_slab_option("slab", by_g ? "two phase functions" : "no phase function",
-                                  "give --g or --phase, one of them");
+        refuse_usage("slab", by_g ? "two phase functions" : "no phase function",
+                     "give --g or --phase, one of them");
     }
     if (options.method != SlabMethod::monte_carlo) {
         for (const CLI::Option* option : options.walk_options) {
             if (option->count() > 0) {
-                return refuse_slab_option(option->get_name(), "this method draws no photons",
-                                          "give it with --method monte-carlo alone");
+                refuse_usage(option->get_name(), "this method draws no photons",
+                             "give it with --method monte-carlo alone");
             }
         }
     } else if (options.streams_option->count() > 0) {
-        return refuse_slab_option("--streams", "photons have no streams",
-                                  "leave it out, or give another --method");
+        refuse_usage("--streams", "photons have no streams",
+                     "leave it out, or give another --method");
     } else if (options.optical_depth > kMostWalkDepth) {
-        return refuse_slab_option("--optical-depth",
-                                  fmt::format("photons take too long above {}", kMostWalkDepth),
-                                  "use --method adding");
+        refuse_usage("--optical-depth",
+                     fmt::format("photons take too long above {}", kMostWalkDepth),
+                     "use --method adding");
     }
     if (options.views > 0 && options.method == SlabMethod::monte_carlo) {
-        return refuse_slab_option("--views", "photons are not counted by direction",
-                                  "give --method adding, model or table");
+        refuse_usage("--views", "photons are not counted by direction",
+                     "give --method adding, model or table");
     }
     if (options.views > 0 && options.eta != 1) {
-        return refuse_slab_option("--eta", "radiance has no boundaries", "leave out --views");
+        refuse_usage("--eta", "radiance has no boundaries", "leave out --views");
     }
     if (options.method != SlabMethod::model && options.method != SlabMethod::table) {
-        return formats::ok_status();
+        return;
     }
     if (options.method == SlabMethod::table && options.streams_option->count() > 0) {
-        return refuse_slab_option("--streams", "tables have their own number of streams",
-                                  "leave it out, or give another --method");
+        refuse_usage("--streams", "tables have their own number of streams",
+                     "leave it out, or give another --method");
     }
     if (options.orders_option->count() > 0) {
-        return refuse_slab_option("--orders", "this method has the orders 0, 1 and 2 and the rest",
-                                  "leave it out");
+        refuse_usage("--orders", "this method has the orders 0, 1 and 2 and the rest",
+                     "leave it out");
     }
     if (options.eta != 1) {
-        return refuse_slab_option("--eta", "this method knows no boundaries",
-                                  "give 1, or --method adding");
+        refuse_usage("--eta", "this method knows no boundaries", "give 1, or --method adding");
     }
     if (options.albedo != 1) {
-        return refuse_slab_option("--albedo", "this method knows no absorption",
-                                  "give 1, or --method adding");
+        refuse_usage("--albedo", "this method knows no absorption", "give 1, or --method adding");
     }
-    return formats::ok_status();
 }
 
 /// Lines of quantity, order and value; "all" where it is no order's.
@@ -123,14 +114,9 @@ void print_view_lines(const Json& views) {
 }
 
 int run(const SlabCommand& options) {
-    if (const auto status = check_slab_options(options); !status) {
-        return report_error(status.error());
-    }
+    check_slab_options(options);
     const auto answer = answer_slab(options);
-    if (!answer) {
-        return report_error(answer.error());
-    }
-    const Json& all = *answer;
+    const Json& all = answer;
     if (options.format == TextFormat::csv && options.views > 0) {
         print_view_lines(all["views"]);
     } else if (options.format == TextFormat::csv) {
@@ -158,9 +144,7 @@ void add_slab_accuracy(CLI::App& command, SlabCommand& options) {
         command.add_option("--photons", options.photons, "paths of the method monte-carlo")
             ->transform(whole_number(1, 1000000000))
             ->option_text("N [1000000]"),
-        command.add_option("--seed", options.seed, "of these paths: another gives other noise")
-            ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-            ->option_text("S [0]"),
+        add_seed_option(command, options.seed, "of these paths: another gives other noise"),
         command
             .add_option("--threads", options.threads,
                         "for these paths, 0: one per core; the result is the same for any number")

@@ -28,7 +28,6 @@ namespace {
 using formats::AtomicFile;
 using formats::ErrorKind;
 using formats::make_error;
-using formats::Status;
 
 struct SweepCommand {
     SceneOptions scene;
@@ -50,18 +49,17 @@ class OutputFolder {
         }
     }
 
-    Status create() {
+    void create() {
         std::error_code error;
         if (std::filesystem::exists(path_, error) && !std::filesystem::is_directory(path_, error)) {
-            return make_error(ErrorKind::usage, path_.string(), "", "is a file, not a folder",
-                              "choose another output");
+            refuse(make_error(ErrorKind::usage, path_.string(), "", "is a file, not a folder",
+                              "choose another output"));
         }
         created_ = std::filesystem::create_directories(path_, error);
         if (error) {
-            return make_error(ErrorKind::resource, path_.string(), "",
-                              "cannot be made: " + error.message(), "choose another output");
+            refuse(make_error(ErrorKind::resource, path_.string(), "",
+                              "cannot be made: " + error.message(), "choose another output"));
         }
-        return formats::ok_status();
     }
 
   private:
@@ -72,40 +70,19 @@ class OutputFolder {
 int run(const SweepCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto options_of_bake = parse_effects(options.scene);
-    if (!options_of_bake) {
-        return report_error(options_of_bake.error());
-    }
     // Of the knobs it starts from: what does not fit there fits nowhere.
-    const auto knobs = bake::resolve_knobs(bake::all_effects(), *options_of_bake);
-    if (!knobs) {
-        return report_error(knobs.error());
-    }
-    const auto imported = open_scene(options.scene, *knobs, formats::CloudDetail::fields);
-    if (!imported) {
-        return report_error(imported.error());
-    }
+    const auto knobs = require(bake::resolve_knobs(bake::all_effects(), options_of_bake));
+    const auto imported = open_scene(options.scene, knobs, formats::CloudDetail::fields);
     OutputFolder folder(options.folder);
-    if (auto status = folder.create(); !status) {
-        return report_error(status.error());
-    }
+    folder.create();
     std::vector<OutputFile> outputs;
     for (const char* name : {"sweep.csv", "sweep.json", "report.html"}) {
         outputs.push_back({name, std::filesystem::path(options.folder) / name, {}});
     }
-    if (auto status = check_outputs(outputs, imported->scene.inputs); !status) {
-        return report_error(status.error());
-    }
-    // Create outputs before the work, so that an unwritable folder fails at once.
-    std::vector<AtomicFile> files;
-    for (const OutputFile& output : outputs) {
-        auto file = AtomicFile::create(output.path);
-        if (!file) {
-            return report_error(file.error());
-        }
-        files.push_back(std::move(*file));
-    }
+    require(check_outputs(outputs, imported.scene.inputs));
+    std::vector<AtomicFile> files = create_outputs(outputs);
     bake::SweepOptions wanted;
-    wanted.bake = *options_of_bake;
+    wanted.bake = options_of_bake;
     wanted.seconds = options.seconds;
     wanted.light = options.light;
     wanted.rates = find_machine_rates().rates;
@@ -114,42 +91,27 @@ int run(const SweepCommand& options) {
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
     const auto show = make_progress_printer(options.progress, "sweep");
-    const auto result = bake::run_sweep(bake::all_effects(), imported->scene, wanted, context,
-                                        [&](const bake::SweepStep& step) {
-                                            if (show) {
-                                                show({"bakes", step.done, step.total});
-                                            }
-                                        });
-    if (!result) {
-        return report_error(result.error());
-    }
+    const auto result = require(bake::run_sweep(bake::all_effects(), imported.scene, wanted,
+                                                context, [&](const bake::SweepStep& step) {
+                                                    if (show)
+                                                        show({"bakes", step.done, step.total});
+                                                }));
     if (show) show({"sweep", 1, 1});
-    const bake::SweepAnalysis analysis = bake::analyse_sweep(*result);
-    const auto json = bake::make_sweep_json(*result, analysis);
-    const auto page = bake::make_report_page(*result, analysis, json);
-    if (!page) {
-        return report_error(page.error());
-    }
+    const bake::SweepAnalysis analysis = bake::analyse_sweep(result);
+    const auto json = bake::make_sweep_json(result, analysis);
+    const auto page = require(bake::make_report_page(result, analysis, json));
     const std::string texts[] = {
-        bake::make_sweep_csv(*result, analysis),
-        json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n", *page};
+        bake::make_sweep_csv(result, analysis),
+        json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n", page};
     for (std::size_t i = 0; i < files.size(); ++i) {
-        Status status = files[i].write(texts[i]);
-        if (!status || !(status = files[i].sync())) {
-            return report_error(status.error());
-        }
+        require(files[i].write(texts[i]));
     }
-    for (AtomicFile& file : files) {
-        if (auto status = file.commit(); !status) {
-            return report_error(status.error());
-        }
-    }
+    commit_outputs(files);
     print_note(fmt::format(
-        "{}: {} bake{} in {}{}; open {}", printable(options.folder), result->points.size(),
-        result->points.size() == 1 ? "" : "s", format_seconds(result->seconds),
-        result->skipped.empty()
-            ? ""
-            : fmt::format(", {} left out (see the page)", result->skipped.size()),
+        "{}: {} bake{} in {}{}; open {}", printable(options.folder), result.points.size(),
+        result.points.size() == 1 ? "" : "s", format_seconds(result.seconds),
+        result.skipped.empty() ? ""
+                               : fmt::format(", {} left out (see the page)", result.skipped.size()),
         printable((std::filesystem::path(options.folder) / "report.html").string())));
     return kExitSuccess;
 }

@@ -37,24 +37,19 @@ TEST(BadOutput, UnwritableFolderIsNamed) {
 
 TEST(BadOutput, PathThroughAFileIsNamed) {
     SmallScene small;
-    const Outcome bake = run_opaline({"bake", small.scene(), "-o", small.scene() + "/out.opal"});
-    EXPECT_EQ(bake.exit_code, 4) << bake.err;
-    EXPECT_THAT(bake.err, HasSubstr("out.opal"));
+    expect_refused({"bake", small.scene(), "-o", small.scene() + "/out.opal"}, 4, "out.opal");
 }
 
 TEST(BadOutput, FolderInPlaceOfTheOutputIsLeftAlone) {
     SmallScene small;
     std::filesystem::create_directory(small.path("out.opal"));
-    const Outcome bake = run_opaline({"bake", small.scene(), "-o", small.path("out.opal")});
-    EXPECT_EQ(bake.exit_code, 4) << bake.err;
+    expect_refused({"bake", small.scene(), "-o", small.path("out.opal")}, 4, "");
     EXPECT_EQ(list_folder(small.folder()), (Arguments{"out.opal", "scene.glb"}));
 }
 
 TEST(BadOutput, DeviceThatIsFullIsAnError) {
     SmallScene small;
-    const Outcome bake = run_opaline({"bake", small.scene(), "-o", "/dev/full"});
-    EXPECT_EQ(bake.exit_code, 4) << bake.err;
-    EXPECT_THAT(bake.err, HasSubstr("No space left on device"));
+    expect_refused({"bake", small.scene(), "-o", "/dev/full"}, 4, "No space left on device");
 }
 
 TEST(BadOutput, DataThatStandardOutputCannotTakeIsAnError) {

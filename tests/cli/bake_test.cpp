@@ -21,9 +21,8 @@ using ::testing::StartsWith;
 TEST(Bake, ReportHasTheKeysOfTheContract) {
     SmallScene small;
     const Outcome bake =
-        run_opaline({"bake", small.scene(), "-o", small.path("a.opal"), "--report",
-                     small.path("r.json"), "--quality", "draft", "--seed", "7", "--threads", "2"});
-    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        run_well({"bake", small.scene(), "-o", small.path("a.opal"), "--report",
+                  small.path("r.json"), "--quality", "draft", "--seed", "7", "--threads", "2"});
     EXPECT_EQ(bake.out, "");
     const Json report = Json::parse(read_text(small.path("r.json")));
     EXPECT_THAT(report.at("version").get<std::string>(), ::testing::MatchesRegex("[0-9.]+"));
@@ -96,11 +95,9 @@ TEST(Bake, TermsOfTheReportAreTheMostThatAnyPrimitiveHas) {
         medium["phase"] = {{"type", "hg"}, {"g", 0.5}};
         write_file(small.path("media.json"),
                    Json{{"materials", {{material, std::move(medium)}}}}.dump());
-        const Outcome bake = run_opaline({"bake", small.scene(), "-o", small.path("a.opal"),
-                                          "--report", small.path("r.json"), "--quality", "draft",
-                                          "--media", small.path("media.json"), "--phase-terms", "4",
-                                          "--effects", "direct,single"});
-        ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        run_well({"bake", small.scene(), "-o", small.path("a.opal"), "--report",
+                  small.path("r.json"), "--quality", "draft", "--media", small.path("media.json"),
+                  "--phase-terms", "4", "--effects", "direct,single"});
         const Json report = Json::parse(read_text(small.path("r.json")));
         EXPECT_EQ(report.at("output").at("terms"), 4) << material;
     }
@@ -119,10 +116,9 @@ TEST(Bake, CheckModelComparesWithTheReferenceAndTellsReportFileAndUser) {
                              "--effects", "direct"};
     Arguments checked = plain;
     checked.push_back("--check-model");
-    ASSERT_EQ(run_opaline(plain).exit_code, 0);
+    run_well(plain);
     EXPECT_FALSE(Json::parse(read_text(report)).contains("model_error"));
-    const Outcome bake = run_opaline(checked);
-    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    const Outcome bake = run_well(checked);
     EXPECT_THAT(bake.err, HasSubstr("; model error "));
     Json error = Json::parse(read_text(report)).at("model_error");
     EXPECT_GE(error.at("rms_relative").get<double>(), error.at("ci95").at(0).get<double>());
@@ -158,8 +154,7 @@ TEST(Bake, TargetErrorIsReportedWithWhatThePilotTried) {
     SmallScene small;
     const std::string out = small.path("a.opal"), report = small.path("a.json");
     const Outcome bake =
-        run_opaline({"bake", small.scene(), "-o", out, "--report", report, "--error", "0.2"});
-    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        run_well({"bake", small.scene(), "-o", out, "--report", report, "--error", "0.2"});
     EXPECT_THAT(bake.err, HasSubstr("asked for 20 %, expected "));
     const Json json = Json::parse(read_text(report));
     const Json& accuracy = json.at("accuracy");
@@ -194,9 +189,9 @@ TEST(Bake, TestLightsAreComputedOnceForAllBakes) {
     for (const int i : {0, 1}) {
         const std::string report = small.path("r" + std::to_string(i) + ".json");
         const Outcome bake =
-            run_any({"env", "XDG_CACHE_HOME=" + cache.path().string(), OPALINE_PROGRAM, "bake",
-                     small.scene(), "-o", small.path("a" + std::to_string(i) + ".opal"),
-                     "--quality", "draft", "--report", report});
+            run_with_cache(cache.path(), {"bake", small.scene(), "-o",
+                                          small.path("a" + std::to_string(i) + ".opal"),
+                                          "--quality", "draft", "--report", report});
         ASSERT_EQ(bake.exit_code, 0) << bake.err;
         seconds[i] = seconds_of(Json::parse(read_text(report)), "test lights");
     }
@@ -210,13 +205,12 @@ TEST(Bake, CompressionChangesTheSizeOfTheFileAndNoLight) {
     std::string light;
     for (const std::string compression : {"none", "fast", "best"}) {
         const std::string out = small.path(compression + ".opal");
-        const Outcome bake = run_opaline(
+        run_well(
             {"bake", small.scene(), "-o", out, "--quality", "draft", "--compression", compression});
-        ASSERT_EQ(bake.exit_code, 0) << bake.err;
         size[compression] = std::filesystem::file_size(out);
-        EXPECT_EQ(run_opaline({"verify", out}).exit_code, 0);
+        run_well({"verify", out});
         const std::string table = small.path("light.csv");
-        ASSERT_EQ(run_opaline({"relight", out, "--light", "studio", "-o", table}).exit_code, 0);
+        run_well({"relight", out, "--light", "studio", "-o", table});
         if (light.empty()) light = read_text(table);
         EXPECT_EQ(read_text(table), light);
     }
@@ -253,8 +247,7 @@ TEST(Bake, DepfileTellsMakeWhenToBakeAgain) {
 TEST(Bake, ProgressIsJsonLinesOnRequestAndSilentOffATerminal) {
     SmallScene small;
     const std::string out = small.path("a.opal");
-    const Outcome json = run_opaline({"bake", small.scene(), "-o", out, "--progress", "json"});
-    ASSERT_EQ(json.exit_code, 0);
+    const Outcome json = run_well({"bake", small.scene(), "-o", out, "--progress", "json"});
     std::istringstream lines(json.err);
     std::string line;
     std::map<std::string, std::vector<std::string>> events;  // by stage
@@ -283,13 +276,13 @@ TEST(Bake, InterruptedBakeLeavesNothing) {
     write_file(folder / "sheet.glb", wavy_sheet(200).glb());
     for (const int signal : {SIGINT, SIGTERM}) {
         const Outcome bake =
-            run_opaline({"bake", folder / "sheet.glb", "-o", folder / "out.opal", "--report",
-                         folder / "r.json", "--quality", "reference"},
-                        [&](int process) {
-                            // Its files have no names before it ends: some time after its start.
-                            std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-                            ::kill(process, signal);
-                        });
+            start_opaline({"bake", folder / "sheet.glb", "-o", folder / "out.opal", "--report",
+                           folder / "r.json", "--quality", "reference"},
+                          [&](int process) {
+                              // Its files have no names before it ends: some time after its start.
+                              std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+                              ::kill(process, signal);
+                          });
         EXPECT_EQ(bake.exit_code, 130) << bake.err;
         EXPECT_THAT(bake.err, HasSubstr("interrupted"));
         EXPECT_EQ(list_folder(folder.path()), Arguments{"sheet.glb"});
@@ -301,23 +294,19 @@ TEST(Bake, MetresPerUnitScalesTheGeometryAndNothingElse) {
     for (const std::string unit : {"1", "0.001"}) {
         // Random rays to other surfaces are keyed by places.
         const std::string file = small.path(unit + ".opal");
-        const Outcome bake = run_opaline({"bake", small.scene(), "-o", file, "--quality", "draft",
-                                          "--effects", "direct", "--metres-per-unit", unit});
-        ASSERT_EQ(bake.exit_code, 0) << bake.err;
-        ASSERT_EQ(
-            run_opaline({"relight", file, "--light", "studio", "-o", file + ".csv"}).exit_code, 0);
+        run_well({"bake", small.scene(), "-o", file, "--quality", "draft", "--effects", "direct",
+                  "--metres-per-unit", unit});
+        run_well({"relight", file, "--light", "studio", "-o", file + ".csv"});
     }
     EXPECT_EQ(read_text(small.path("0.001.opal.csv")), read_text(small.path("1.opal.csv")));
 }
 
 TEST(Plan, NamesEffectSubjectAndReasonAsTableAndAsJson) {
     SmallScene small;
-    const Outcome table = run_opaline({"plan", small.scene()});
-    EXPECT_EQ(table.exit_code, 0);
+    const Outcome table = run_well({"plan", small.scene()});
     EXPECT_THAT(table.out, HasSubstr("direct"));
     EXPECT_THAT(table.out, HasSubstr("Brick"));
-    const Outcome json = run_opaline({"plan", small.scene(), "--json"});
-    EXPECT_EQ(json.exit_code, 0);
+    const Outcome json = run_well({"plan", small.scene(), "--json"});
     const Json plan = Json::parse(json.out).at("plan");
     ASSERT_FALSE(plan.empty());
     for (const Json& entry : plan) {
@@ -335,9 +324,8 @@ TEST(Plan, EffectsAllTurnsOnWhatTheSceneDoesNotCallForAndSaysSo) {
     std::ofstream(small.path("ink.json")) << R"({"materials": {"*": {"sigma_s": [1e-3, 1e-3, 1e-3],
         "sigma_a": [1e3, 1e3, 1e3], "unit": "1/m", "eta": 1.3}}})";
     const auto forced = [&](const char* effects, const char* decision) {
-        const Outcome json = run_opaline({"plan", small.scene(), "--media", small.path("ink.json"),
-                                          "--json", "--effects", effects});
-        EXPECT_EQ(json.exit_code, 0) << json.err;
+        const Outcome json = run_well({"plan", small.scene(), "--media", small.path("ink.json"),
+                                       "--json", "--effects", effects});
         int count = 0, decided = 0;
         const Json plan = Json::parse(json.out);
         for (const Json& entry : plan.at("plan")) {
@@ -353,16 +341,13 @@ TEST(Plan, EffectsAllTurnsOnWhatTheSceneDoesNotCallForAndSaysSo) {
 
 TEST(Example, EveryListedSceneBakes) {
     const TemporaryFolder folder;
-    const Outcome list = run_opaline({"example", "--list"});
-    EXPECT_EQ(list.exit_code, 0);
+    const Outcome list = run_well({"example", "--list"});
     for (const std::string name : {"statue", "knot", "studio", "white", "sun:", "sky:"}) {
         EXPECT_THAT(list.out, HasSubstr(name));
     }
     // The statue takes a while; its bake is the quick start's.
-    const Outcome knot = run_opaline({"example", "knot", "-o", folder.path().string()});
-    EXPECT_EQ(knot.exit_code, 0) << knot.err;
-    const Outcome plan = run_opaline({"plan", folder / "knot.gltf"});
-    EXPECT_EQ(plan.exit_code, 0) << plan.err;
+    const Outcome knot = run_well({"example", "knot", "-o", folder.path().string()});
+    run_well({"plan", folder / "knot.gltf"});
 }
 
 TEST(Example, LightSavedAsExrLightsAsTheBuiltInOneDoes) {
@@ -373,15 +358,13 @@ TEST(Example, LightSavedAsExrLightsAsTheBuiltInOneDoes) {
                                            {"white", "1e-6"},
                                            {"sun:40,30", "0.25"},
                                            {"sky:3,35", "0.25"}}) {
-        const Outcome example = run_opaline({"example", light, "-o", small.folder().string()});
-        ASSERT_EQ(example.exit_code, 0) << light << example.err;
+        const Outcome example = run_well({"example", light, "-o", small.folder().string()});
         const std::string file = example.out.substr(0, example.out.find('\n'));
         EXPECT_THAT(file, ::testing::EndsWith(".exr"));
         const std::string a = small.path("a.csv"), b = small.path("b.csv");
-        ASSERT_EQ(run_opaline({"relight", small.baked(), "--light", light, "-o", a}).exit_code, 0);
-        ASSERT_EQ(run_opaline({"relight", small.baked(), "--light", file, "-o", b}).exit_code, 0);
-        const Outcome same = run_opaline({"compare", a, b, "--max-rel", tolerance});
-        EXPECT_EQ(same.exit_code, 0) << light << same.out << same.err;
+        run_well({"relight", small.baked(), "--light", light, "-o", a});
+        run_well({"relight", small.baked(), "--light", file, "-o", b});
+        run_well({"compare", a, b, "--max-rel", tolerance});
     }
 }
 

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "formats/opal/write_opal.h"
 #include "tests/cli/print_json.h"
 #include "tests/cli/small_scene.h"
 #include "tests/formats/opal/cloud_fixture.h"
@@ -16,19 +15,11 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string write_clouds(const SmallScene& small, const formats::Asset& asset) {
-    const std::string path = small.path("clouds.opal");
-    auto file = formats::AtomicFile::create(path);
-    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
-    return path;
-}
-
 TEST(CloudFiles, InfoListsTheLayer) {
     SmallScene small;
     const formats::Asset asset = make_cloud_asset();
-    const std::string file = write_clouds(small, asset);
-    const Outcome text = run_opaline({"info", file});
-    ASSERT_EQ(text.exit_code, 0) << text.err;
+    const std::string file = small.write(asset, "clouds.opal");
+    const Outcome text = run_well({"info", file});
     EXPECT_THAT(text.out,
                 AllOf(HasSubstr("cloud layers\n    0  base at 800 m over ground at -20 m, "
                                 "4000 x 3000 m, up to "),
@@ -56,31 +47,27 @@ TEST(CloudFiles, InfoListsTheLayer) {
 
     formats::Asset paper = asset;
     paper.clouds.records[0].flags |= formats::LayerRecord::kPaper;
-    EXPECT_THAT(run_opaline({"info", write_clouds(small, paper)}).out,
+    EXPECT_THAT(run_opaline({"info", small.write(paper, "clouds.opal")}).out,
                 HasSubstr("; fidelity paper\n"));
 
     const formats::Asset single = make_cloud_asset({.has_radiance = false});
-    EXPECT_THAT(run_opaline({"info", write_clouds(small, single)}).out,
+    EXPECT_THAT(run_opaline({"info", small.write(single, "clouds.opal")}).out,
                 HasSubstr("orders: 0 and 1;"));
 }
 
 TEST(CloudFiles, VerifyAcceptsSoundOnesAndNamesFaults) {
     SmallScene small;
     formats::Asset asset = make_cloud_asset();
-    EXPECT_EQ(run_opaline({"verify", write_clouds(small, asset)}).exit_code, 0);
+    run_well({"verify", small.write(asset, "clouds.opal")});
     asset.clouds.value.back() = 1e30f;
-    const Outcome damaged = run_opaline({"verify", write_clouds(small, asset)});
-    EXPECT_EQ(damaged.exit_code, 1);
-    EXPECT_THAT(damaged.err,
-                HasSubstr("section CLOU, layer 0: band 2: a value of its tables of radiance"));
+    expect_refused({"verify", small.write(asset, "clouds.opal")}, 1,
+                   "section CLOU, layer 0: band 2: a value of its tables of radiance");
 }
 
 TEST(CloudFiles, EveryCommandThatReadsOneEndsWellWithoutAnyVertex) {
     SmallScene small;
-    const std::string file = write_clouds(small, make_cloud_asset());
-    const Outcome table =
-        run_opaline({"relight", file, "--light", "studio", "-o", small.path("o.csv")});
-    EXPECT_EQ(table.exit_code, 0) << table.err;
+    const std::string file = small.write(make_cloud_asset(), "clouds.opal");
+    run_well({"relight", file, "--light", "studio", "-o", small.path("o.csv")});
     EXPECT_THAT(read_text(small.path("o.csv")), HasSubstr("primitive,vertex,r,g,b"));
     for (const char* output : {"o.ply", "o.exr", "o.png"}) {
         const Outcome other =

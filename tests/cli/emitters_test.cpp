@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "formats/opal/write_opal.h"
 #include "tests/cli/small_scene.h"
 #include "tests/formats/opal/emitter_fixture.h"
 
@@ -15,33 +14,28 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 std::string write_emitter_file(const SmallScene& small) {
-    auto file = formats::AtomicFile::create(small.path("lamps.opal"));
-    EXPECT_TRUE(file && formats::write_opal(make_emitter_asset().view(), std::move(*file)));
-    return small.path("lamps.opal");
+    return small.write(make_emitter_asset(), "lamps.opal");
 }
 
 // What `relight --json` prints.
 nlohmann::json relit(const SmallScene& small, Arguments more) {
-    Arguments arguments{"relight", write_emitter_file(small), "--light", "black",
-                        "-o",      small.path("o.csv"),       "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome outcome = run_opaline(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = run_well(join({"relight", write_emitter_file(small), "--light", "black",
+                                           "-o", small.path("o.csv"), "--json"},
+                                          more));
     return nlohmann::json::parse(outcome.out);
 }
 
 TEST(EmitterFiles, AreListedAndVerified) {
     SmallScene small;
     const std::string file = write_emitter_file(small);
-    const Outcome info = run_opaline({"info", file, "--json"});
-    ASSERT_EQ(info.exit_code, 0) << info.err;
+    const Outcome info = run_well({"info", file, "--json"});
     const auto emitters = nlohmann::json::parse(info.out)["emitters"];
     ASSERT_EQ(emitters.size(), 2u);
     EXPECT_EQ(emitters[0]["name"], "Lamp");
     EXPECT_EQ(emitters[1]["glowing_primitives"], 1);
     EXPECT_THAT(run_opaline({"info", file}).out,
                 AllOf(HasSubstr("'Lamp': "), HasSubstr(" times the light of a sky of radiance 1")));
-    EXPECT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    run_well({"verify", file});
 }
 
 TEST(EmitterFiles, AreSwitchedAndDimmed) {
@@ -76,10 +70,9 @@ TEST(EmitterFiles, NamesAndFactorsThatAreNoneAreRefused) {
 
 TEST(EmitterFiles, OfAFileWithoutAnyThereIsNoneToName) {
     SmallScene small;
-    const Outcome outcome = run_opaline({"relight", small.baked(), "--light", "white", "--emitter",
-                                         "Lamp=1", "-o", small.path("o.csv")});
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_THAT(outcome.err, HasSubstr("it has none at all"));
+    expect_refused({"relight", small.baked(), "--light", "white", "--emitter", "Lamp=1", "-o",
+                    small.path("o.csv")},
+                   2, "it has none at all");
 }
 
 }  // namespace

@@ -21,9 +21,7 @@ std::string bake_sunlit(const SmallScene& small) {
                                    {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}});
     asset.json["scenes"][0]["nodes"].push_back(asset.json["nodes"].size() - 1);
     write_file(small.path("sun.glb"), asset.glb());
-    const Outcome bake = run_opaline(
-        {"bake", small.path("sun.glb"), "-o", small.path("sun.opal"), "--quality", "draft"});
-    EXPECT_EQ(bake.exit_code, 0) << bake.err;
+    run_well({"bake", small.path("sun.glb"), "-o", small.path("sun.opal"), "--quality", "draft"});
     return small.path("sun.opal");
 }
 
@@ -45,10 +43,8 @@ TEST(Exposure, ASunInLuxIsNoWhitePictureAndAllFramesShareOneExposure) {
     SmallScene small;
     const std::string file = bake_sunlit(small);
     const auto draw = [&](const std::string& name, Arguments more) {
-        Arguments arguments{"render", file, "--size", "48x36", "-o", small.path(name)};
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        const Outcome outcome = run_opaline(arguments);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        const Outcome outcome =
+            run_well(join({"render", file, "--size", "48x36", "-o", small.path(name)}, more));
         return outcome.err;
     };
     for (const std::string backend : {"cpu", "gl"}) {

@@ -37,8 +37,7 @@ TEST(LayerBake, IsPlannedBakedAndStatedFromAMediaFileAlone) {
     EXPECT_EQ(plan_of(scene, "radiosity")["decision"], "on");
     const std::string file = small.path("layer.opal"), report = small.path("report.json");
     const Outcome bake =
-        run_opaline({"bake", scene, "-o", file, "--quality", "draft", "--report", report});
-    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+        run_well({"bake", scene, "-o", file, "--quality", "draft", "--report", report});
     EXPECT_THAT(bake.err, HasSubstr("cloud layer errs by"));
     const nlohmann::json error = nlohmann::json::parse(read_text(report))["error"];
     const double stated = error["by_effect"]["cloud"];
@@ -48,7 +47,7 @@ TEST(LayerBake, IsPlannedBakedAndStatedFromAMediaFileAlone) {
     EXPECT_THAT(run_opaline({"info", file}).out,
                 AllOf(HasSubstr("layer errs"), HasSubstr("base at 1000 m over ground at 0 m"),
                       Not(HasSubstr("measured error"))));
-    EXPECT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    run_well({"verify", file});
 }
 
 TEST(LayerBake, BlackGroundSendsNothingBackAndAVeilIsNoCloud) {
@@ -64,9 +63,7 @@ TEST(LayerBake, TwoLayersAreOneTooMany) {
     SmallScene small;
     const std::string scene = small.path("two.json");
     write_file(scene, std::string(R"({"clouds": [{"thickness": 100}, {"thickness": 50}]})"));
-    const Outcome outcome = run_opaline({"plan", scene});
-    EXPECT_EQ(outcome.exit_code, 3);
-    EXPECT_THAT(outcome.err, HasSubstr("this version simulates one"));
+    expect_refused({"plan", scene}, 3, "this version simulates one");
 }
 
 }  // namespace

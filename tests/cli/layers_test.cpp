@@ -4,8 +4,6 @@
 #include <sstream>
 #include <string>
 
-#include "formats/image/exr.h"
-#include "formats/opal/write_opal.h"
 #include "tests/cli/small_scene.h"
 #include "tests/formats/opal/asset_fixture.h"
 #include "tests/formats/opal/cloud_fixture.h"
@@ -17,63 +15,44 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string write_layer_file(const SmallScene& small, const formats::Asset& asset,
-                             const std::string& name = "layer.opal") {
-    auto file = formats::AtomicFile::create(small.path(name));
-    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
-    return small.path(name);
-}
-
-// Of all pixels; a picture by the CPU of 32 x 24 pixels.
-double mean_of_picture(const SmallScene& small, const std::string& file,
-                       std::vector<std::string> more) {
+// Of a picture by the CPU of 32 x 24 pixels.
+double mean_of_drawn(const SmallScene& small, const std::string& file, const Arguments& more) {
     const std::string out = small.path("mean.exr");
-    std::vector<std::string> arguments{"render",   file,     "--backend", "cpu", "--light",
-                                       "sky:3,40", "--size", "32x24",     "-o",  out};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const Outcome drawn = run_opaline(arguments);
-    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
-    const auto seen = formats::read_exr(out);
-    EXPECT_TRUE(seen);
-    double mean = 0;
-    for (const formats::Rgb& pixel : seen->pixel) {
-        mean += static_cast<double>(pixel.g) / static_cast<double>(seen->pixel.size());
-    }
-    return mean;
+    run_well(join(
+        {"render", file, "--backend", "cpu", "--light", "sky:3,40", "--size", "32x24", "-o", out},
+        more));
+    return mean_of_picture(out);
 }
 
 TEST(LayerFiles, RelightOfALayerAloneIsATableWithoutRows) {
     SmallScene small;
-    const std::string file = write_layer_file(small, make_cloud_asset());
+    const std::string file = small.write(make_cloud_asset(), "layer.opal");
     const std::string out = small.path("o.csv");
-    const Outcome outcome = run_opaline({"relight", file, "--light", "white", "-o", out});
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = run_well({"relight", file, "--light", "white", "-o", out});
     EXPECT_THAT(outcome.err, AllOf(HasSubstr("cloud layer alone"), HasSubstr("opaline render")));
     EXPECT_EQ(read_text(out), "primitive,vertex,r,g,b\n");
 }
 
 TEST(LayerFiles, RenderShowsThemFromBelowAndFromAboveAndMovedByTheirWind) {
     SmallScene small;
-    const std::string file = write_layer_file(small, make_cloud_asset());
-    const double below = mean_of_picture(small, file, {});
+    const std::string file = small.write(make_cloud_asset(), "layer.opal");
+    const double below = mean_of_drawn(small, file, {});
     EXPECT_GT(below, 0);
-    EXPECT_EQ(mean_of_picture(small, file, {"--time", "0"}), below);
-    EXPECT_NE(mean_of_picture(small, file, {"--time", "60"}), below);
-    EXPECT_NE(mean_of_picture(small, file, {"--elevation", "30"}), below);
+    EXPECT_EQ(mean_of_drawn(small, file, {"--time", "0"}), below);
+    EXPECT_NE(mean_of_drawn(small, file, {"--time", "60"}), below);
+    EXPECT_NE(mean_of_drawn(small, file, {"--elevation", "30"}), below);
     for (const char* time : {"nan", "1e10", "noon"}) {
-        const Outcome outcome = run_opaline(
-            {"render", file, "--light", "white", "--time", time, "-o", small.path("bad.png")});
-        EXPECT_EQ(outcome.exit_code, 2) << time;
-        EXPECT_THAT(outcome.err, HasSubstr("--time"));
+        expect_refused(
+            {"render", file, "--light", "white", "--time", time, "-o", small.path("bad.png")}, 2,
+            "--time");
     }
 }
 
 TEST(LayerFiles, TurntablesAndTimingsAreThoseOfOtherFiles) {
     SmallScene small;
-    const std::string file = write_layer_file(small, make_cloud_asset());
-    const Outcome outcome = run_opaline({"render", file, "--light", "sun:30,40", "--frames", "2",
-                                         "--size", "16x12", "--stats", "-o", small.path("t.png")});
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::string file = small.write(make_cloud_asset(), "layer.opal");
+    const Outcome outcome = run_well({"render", file, "--light", "sun:30,40", "--frames", "2",
+                                      "--size", "16x12", "--stats", "-o", small.path("t.png")});
     EXPECT_THAT(outcome.out, AllOf(HasSubstr("layer light"), HasSubstr("draw per frame")));
     EXPECT_NE(read_text(small.path("t-0001.png")), read_text(small.path("t-0002.png")));
 }
@@ -81,46 +60,32 @@ TEST(LayerFiles, TurntablesAndTimingsAreThoseOfOtherFiles) {
 // The film stands still but for the clouds: each frame is what --time shows.
 TEST(LayerFiles, FilmsShowTheLayerAtTheTimeOfEachFrame) {
     SmallScene small;
-    const std::string file = write_layer_file(small, make_cloud_asset());
-    const std::vector<std::string> common{"render",  file,        "--backend", "cpu",
-                                          "--light", "sun:30,40", "--size",    "16x12"};
-    const auto draw = [&](std::vector<std::string> more) {
-        std::vector<std::string> arguments = common;
-        arguments.insert(arguments.end(), more.begin(), more.end());
-        return run_opaline(arguments);
-    };
-    const auto film =
-        draw({"--frames", "3", "--time", "20", "--time-step", "30", "-o", small.path("film.png")});
-    ASSERT_EQ(film.exit_code, 0) << film.err;
+    const std::string file = small.write(make_cloud_asset(), "layer.opal");
+    const Arguments common{"render",  file,        "--backend", "cpu",
+                           "--light", "sun:30,40", "--size",    "16x12"};
+    const auto draw = [&](const Arguments& more) { run_well(join(common, more)); };
+    draw({"--frames", "3", "--time", "20", "--time-step", "30", "-o", small.path("film.png")});
     for (const auto& [frame, time] :
          {std::pair("film-0001.png", "20"), {"film-0002.png", "50"}, {"film-0003.png", "80"}}) {
-        ASSERT_EQ(draw({"--time", time, "-o", small.path("one.png")}).exit_code, 0);
+        draw({"--time", time, "-o", small.path("one.png")});
         EXPECT_EQ(read_text(small.path(frame)), read_text(small.path("one.png"))) << time;
     }
     EXPECT_NE(read_text(small.path("film-0001.png")), read_text(small.path("film-0003.png")));
-    ASSERT_EQ(draw({"--frames", "3", "--time", "20", "--time-step", "30", "--turn", "90", "-o",
-                    small.path("turn.png")})
-                  .exit_code,
-              0);
+    draw({"--frames", "3", "--time", "20", "--time-step", "30", "--turn", "90", "-o",
+          small.path("turn.png")});
     EXPECT_EQ(read_text(small.path("turn-0001.png")), read_text(small.path("film-0001.png")));
     EXPECT_NE(read_text(small.path("turn-0002.png")), read_text(small.path("film-0002.png")));
 
-    const auto expect_refused = [&](std::vector<std::string> more, const char* fault) {
-        more.insert(more.end(), {"-o", small.path("bad.png")});
-        const Outcome outcome = draw(more);
-        EXPECT_EQ(outcome.exit_code, 2) << fault;
-        EXPECT_THAT(outcome.err, AllOf(HasSubstr("--time-step"), HasSubstr(fault)));
-    };
-    expect_refused({"--time-step", "3"}, "one frame only");
-    expect_refused({"--frames", "2", "--time-step", "nan"}, "");
-    const Outcome turned = draw({"--turn", "90", "-o", small.path("bad.png")});
-    EXPECT_EQ(turned.exit_code, 2);
-    EXPECT_THAT(turned.err, AllOf(HasSubstr("--turn"), HasSubstr("one frame only")));
-    const std::string clear = write_layer_file(small, make_small_asset(), "clear.opal");
-    const Outcome none = run_opaline({"render", clear, "--light", "white", "--frames", "2",
-                                      "--time-step", "3", "-o", small.path("bad.png")});
-    EXPECT_EQ(none.exit_code, 2);
-    EXPECT_THAT(none.err, HasSubstr("no cloud layer"));
+    const Arguments bad{"-o", small.path("bad.png")};
+    expect_refused(join(join(common, {"--time-step", "3"}), bad), 2,
+                   "--time-step: there is one frame only");
+    expect_refused(join(join(common, {"--frames", "2", "--time-step", "nan"}), bad), 2,
+                   "--time-step");
+    expect_refused(join(join(common, {"--turn", "90"}), bad), 2, "--turn: there is one frame only");
+    const std::string clear = small.write(make_small_asset(), "clear.opal");
+    expect_refused({"render", clear, "--light", "white", "--frames", "2", "--time-step", "3", "-o",
+                    small.path("bad.png")},
+                   2, "no cloud layer");
 }
 
 // Sum of all numbers of a table of relight behind its vertices.
@@ -139,15 +104,14 @@ double sum_of_table(const std::string& text) {
 TEST(LayerFiles, LayerTakesLightFromTheMeshesOfItsFile) {
     SmallScene small;
     formats::Asset asset = make_small_asset();
-    const std::string clear = write_layer_file(small, asset, "clear.opal");
+    const std::string clear = small.write(asset, "clear.opal");
     add_layer(asset);
     asset.clouds.thickness.assign(asset.clouds.thickness.size(), 65535);
-    const std::string cloudy = write_layer_file(small, asset, "cloudy.opal");
+    const std::string cloudy = small.write(asset, "cloudy.opal");
     const auto light_of = [&](const std::string& file, const char* time) {
         const std::string out = small.path("r.csv");
         const Outcome outcome =
-            run_opaline({"relight", file, "--light", "sun:0,50", "--time", time, "-o", out});
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+            run_well({"relight", file, "--light", "sun:0,50", "--time", time, "-o", out});
         EXPECT_THAT(outcome.err, Not(HasSubstr("alone")));
         return sum_of_table(read_text(out));
     };
@@ -174,15 +138,14 @@ TEST(LayerFiles, NodesThatStandFarApartHaveTheLightOfTheirPlaces) {
     formats::Asset asset = make_small_asset();
     add_layer(asset);
     asset.primitives[1].node = 1;
-    const std::string near = write_layer_file(small, asset, "near.opal");
+    const std::string near = small.write(asset, "near.opal");
     for (std::uint32_t v = 0; v < asset.primitives[1].vertex_count; ++v) {
         asset.position[asset.primitives[1].first_vertex + v].x += 1500;
     }
-    const std::string apart = write_layer_file(small, asset, "apart.opal");
+    const std::string apart = small.write(asset, "apart.opal");
     const auto light_of = [&](const std::string& file, const char* primitive) {
         const std::string out = small.path("r.csv");
-        const Outcome outcome = run_opaline({"relight", file, "--light", "sun:0,50", "-o", out});
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        run_well({"relight", file, "--light", "sun:0,50", "-o", out});
         return sum_of_table(table_of(read_text(out), primitive));
     };
     const double stays = light_of(near, "0"), goes = light_of(near, "1");
@@ -201,27 +164,24 @@ TEST(LayerFiles, NodesThatStandFarApartHaveTheLightOfTheirPlaces) {
 TEST(LayerFiles, SingleTermsAreShownWithoutTheLayer) {
     SmallScene small;
     formats::Asset asset = make_small_asset();
-    const std::string clear = write_layer_file(small, asset, "clear.opal");
+    const std::string clear = small.write(asset, "clear.opal");
     add_layer(asset);
-    const std::string cloudy = write_layer_file(small, asset, "cloudy.opal");
-    const std::vector<std::string> away{"--eye", "0,500,0", "--target", "0,900,300"};
-    std::vector<std::string> diffuse = away;
+    const std::string cloudy = small.write(asset, "cloudy.opal");
+    const Arguments away{"--eye", "0,500,0", "--target", "0,900,300"};
+    Arguments diffuse = away;
     diffuse.insert(diffuse.end(), {"--terms", "diffuse"});
-    EXPECT_GT(mean_of_picture(small, cloudy, away), 0);
-    EXPECT_NE(mean_of_picture(small, cloudy, away), mean_of_picture(small, clear, away));
-    EXPECT_EQ(mean_of_picture(small, cloudy, diffuse), 0);
+    EXPECT_GT(mean_of_drawn(small, cloudy, away), 0);
+    EXPECT_NE(mean_of_drawn(small, cloudy, away), mean_of_drawn(small, clear, away));
+    EXPECT_EQ(mean_of_drawn(small, cloudy, diffuse), 0);
 }
 
 TEST(LayerFiles, ReferenceRefusesALayerAloneAndSaysWhatItLeavesOut) {
     SmallScene small;
     const std::string media = small.path("layer.json"), out = small.path("o.exr");
     write_file(media, std::string(R"({"clouds": [{"thickness": 100}]})"));
-    const Outcome alone = run_opaline({"reference", media, "--light", "white", "-o", out});
-    EXPECT_EQ(alone.exit_code, 3);
-    EXPECT_THAT(alone.err, HasSubstr("cloud layer alone"));
-    const Outcome beside = run_opaline({"reference", small.scene(), "--media", media, "--light",
-                                        "white", "--size", "8x6", "--spp", "1", "-o", out});
-    EXPECT_EQ(beside.exit_code, 0) << beside.err;
+    expect_refused({"reference", media, "--light", "white", "-o", out}, 3, "cloud layer alone");
+    const Outcome beside = run_well({"reference", small.scene(), "--media", media, "--light",
+                                     "white", "--size", "8x6", "--spp", "1", "-o", out});
     EXPECT_THAT(beside.err, HasSubstr("cloud layer is left out"));
 }
 

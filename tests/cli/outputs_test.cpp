@@ -12,9 +12,7 @@ using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 Arguments draft(const SmallScene& small, const Arguments& more) {
-    Arguments arguments = {"bake", small.scene(), "--quality", "draft"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
+    return join({"bake", small.scene(), "--quality", "draft"}, more);
 }
 
 TEST(Outputs, EmptyNameIsRefusedBeforeAnyWork) {
@@ -22,9 +20,7 @@ TEST(Outputs, EmptyNameIsRefusedBeforeAnyWork) {
     const std::string out = small.path("a.opal");
     for (const Arguments& more :
          {Arguments{"-o", ""}, {"-o", out, "--report", ""}, {"-o", out, "--depfile", ""}}) {
-        const Outcome bake = run_opaline(draft(small, more));
-        EXPECT_EQ(bake.exit_code, 2) << bake.err;
-        EXPECT_THAT(bake.err, HasSubstr("the name is empty"));
+        expect_refused(draft(small, more), 2, "the name is empty");
     }
     EXPECT_EQ(list_folder(small.folder()), Arguments{"scene.glb"});
 }
@@ -42,9 +38,7 @@ TEST(Outputs, TwoOutputsInOneFileAreRefused) {
         {"-o", out, "--report", small.path("here/q.opal")},
         {"-o", out, "--report", small.path("./here/./q.opal")}};
     for (const Arguments& more : same) {
-        const Outcome bake = run_opaline(draft(small, more));
-        EXPECT_EQ(bake.exit_code, 2) << bake.err;
-        EXPECT_THAT(bake.err, HasSubstr(" name the same file")) << ::testing::PrintToString(more);
+        expect_refused(draft(small, more), 2, " name the same file");
     }
     EXPECT_EQ(list_folder(small.folder()), (Arguments{"here", "link", "scene.glb"}));
     write_file(out, std::string("former"));
@@ -55,9 +49,8 @@ TEST(Outputs, TwoOutputsInOneFileAreRefused) {
 
 TEST(Outputs, OutputsThatTakeEverythingMayBeNamedTwice) {
     SmallScene small;
-    const Outcome bake = run_opaline(draft(
+    run_well(draft(
         small, {"-o", small.path("a.opal"), "--report", "/dev/null", "--depfile", "/dev/null"}));
-    EXPECT_EQ(bake.exit_code, 0) << bake.err;
 }
 
 TEST(Outputs, InputsAreNotOverwrittenThroughLinks) {
@@ -69,9 +62,7 @@ TEST(Outputs, InputsAreNotOverwrittenThroughLinks) {
         if (option != std::string("-o")) {
             more.insert(more.end(), {"-o", small.path("a.opal")});
         }
-        const Outcome bake = run_opaline(draft(small, more));
-        EXPECT_EQ(bake.exit_code, 2) << bake.err;
-        EXPECT_THAT(bake.err, HasSubstr("is an input and would be overwritten"));
+        expect_refused(draft(small, more), 2, "is an input and would be overwritten");
     }
     EXPECT_EQ(read_text(small.scene()), before);
 }
@@ -79,18 +70,15 @@ TEST(Outputs, InputsAreNotOverwrittenThroughLinks) {
 TEST(Outputs, OneFrameOfATurntableMayNotBeTheLight) {
     SmallScene small;
     write_file(small.path("t-0002.exr"), std::string("a light"));
-    const Outcome render =
-        run_opaline({"render", small.baked(), "--light", small.path("t-0002.exr"), "-o",
-                     small.path("t.exr"), "--frames", "3", "--backend", "cpu"});
-    EXPECT_EQ(render.exit_code, 2) << render.err;
-    EXPECT_THAT(render.err, HasSubstr("t-0002.exr: is an input"));
+    expect_refused({"render", small.baked(), "--light", small.path("t-0002.exr"), "-o",
+                    small.path("t.exr"), "--frames", "3", "--backend", "cpu"},
+                   2, "t-0002.exr: is an input");
 }
 
 TEST(Outputs, LinkIsFollowed) {
     SmallScene small;
     std::filesystem::create_symlink("real.opal", small.path("link.opal"));
-    const Outcome bake = run_opaline(draft(small, {"-o", small.path("link.opal")}));
-    ASSERT_EQ(bake.exit_code, 0) << bake.err;
+    run_well(draft(small, {"-o", small.path("link.opal")}));
     EXPECT_TRUE(std::filesystem::is_symlink(small.path("link.opal")));
     EXPECT_TRUE(std::filesystem::is_regular_file(small.path("real.opal")));
 }
@@ -98,10 +86,8 @@ TEST(Outputs, LinkIsFollowed) {
 TEST(Outputs, FailureOfAReportOrDepfileLeavesNoBake) {
     SmallScene small;
     for (const char* option : {"--report", "--depfile"}) {
-        const Outcome bake =
-            run_opaline(draft(small, {"-o", small.path("a.opal"), option, "/dev/full"}));
-        EXPECT_EQ(bake.exit_code, 4) << bake.err;
-        EXPECT_THAT(bake.err, HasSubstr("No space left on device"));
+        expect_refused(draft(small, {"-o", small.path("a.opal"), option, "/dev/full"}), 4,
+                       "No space left on device");
         EXPECT_EQ(list_folder(small.folder()), Arguments{"scene.glb"});
     }
 }
@@ -109,12 +95,10 @@ TEST(Outputs, FailureOfAReportOrDepfileLeavesNoBake) {
 TEST(Outputs, EndingsMayBeInCapitals) {
     SmallScene small;
     const std::string png = small.path("x.PNG"), csv = small.path("x.CSV");
-    const Outcome render = run_opaline({"render", small.baked(), "--light", "white", "--backend",
-                                        "cpu", "--size", "32x32", "-o", png});
-    EXPECT_EQ(render.exit_code, 0) << render.err;
+    run_well({"render", small.baked(), "--light", "white", "--backend", "cpu", "--size", "32x32",
+              "-o", png});
     EXPECT_THAT(read_text(png), StartsWith("\x89PNG"));
-    const Outcome relight = run_opaline({"relight", small.baked(), "--light", "white", "-o", csv});
-    EXPECT_EQ(relight.exit_code, 0) << relight.err;
+    run_well({"relight", small.baked(), "--light", "white", "-o", csv});
     EXPECT_THAT(read_text(csv), StartsWith("primitive,vertex,"));
 }
 
@@ -122,13 +106,13 @@ TEST(Outputs, EndingsMayBeInCapitals) {
 Arguments folder_after(int signal, int expected_code) {
     SmallScene small;
     write_file(small.path("sheet.glb"), wavy_sheet(400).glb());
-    const Outcome bake =
-        run_opaline({"bake", small.path("sheet.glb"), "-o", small.path("a.opal"), "--report",
-                     small.path("r.json"), "--depfile", small.path("d"), "--quality", "reference"},
-                    [=](int process) {
-                        std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-                        ::kill(process, signal);
-                    });
+    const Outcome bake = start_opaline(
+        {"bake", small.path("sheet.glb"), "-o", small.path("a.opal"), "--report",
+         small.path("r.json"), "--depfile", small.path("d"), "--quality", "reference"},
+        [=](int process) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+            ::kill(process, signal);
+        });
     EXPECT_EQ(bake.exit_code, expected_code) << bake.err;
     return list_folder(small.folder());
 }

@@ -132,8 +132,7 @@ TEST(Phase, AnyFileNameCanBePrinted) {
 
 TEST(Phase, CsvHoldsTheNumbersOfTheJson) {
     const Json json = phase({"--g", "0.25"});
-    const Outcome csv = run_opaline({"phase", "--g", "0.25", "--format", "csv"});
-    EXPECT_EQ(csv.exit_code, 0) << csv.err;
+    const Outcome csv = run_well({"phase", "--g", "0.25", "--format", "csv"});
     std::map<std::string, std::map<double, double>> value;
     std::istringstream lines(csv.out);
     std::string line;
@@ -155,8 +154,7 @@ TEST(Phase, CsvHoldsTheNumbersOfTheJson) {
 }
 
 TEST(Phase, LobesTooNarrowForTheCubeMapAreAWarning) {
-    const Outcome outcome = run_opaline({"phase", "--g", "0.95"});
-    EXPECT_EQ(outcome.exit_code, 0);
+    const Outcome outcome = run_well({"phase", "--g", "0.95"});
     EXPECT_THAT(outcome.err, AllOf(StartsWith("opaline: warning: "), HasSubstr("too narrow")));
     EXPECT_EQ(Json::parse(outcome.out).at("lambda").at(1), 0.95);
 }

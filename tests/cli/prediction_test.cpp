@@ -13,13 +13,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// The program with a cache folder of the test's choice.
-Outcome run_with_cache(const std::string& cache, const Arguments& arguments) {
-    Arguments command{"env", "XDG_CACHE_HOME=" + cache, OPALINE_PROGRAM};
-    command.insert(command.end(), arguments.begin(), arguments.end());
-    return run_any(command);
-}
-
 // All kinds take so much longer than the constants say.
 void keep(const std::string& cache, double factor) {
     ASSERT_TRUE(bake::write_rates(cache + "/opaline/calibration.json", bake::this_machine(),

@@ -12,8 +12,7 @@ namespace opaline::tests {
 /// What a command prints as JSON; it must succeed without a message.
 inline nlohmann::json print_json(const std::string& command, Arguments arguments) {
     arguments.insert(arguments.begin(), command);
-    const Outcome outcome = run_opaline(arguments);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const Outcome outcome = run_well(arguments);
     EXPECT_EQ(outcome.err, "");
     return nlohmann::json::parse(outcome.out);
 }

@@ -37,11 +37,9 @@ struct ErrorBake {
 };
 
 std::string bake_direct(const SmallScene& small, const std::string& name, Arguments more) {
-    Arguments command{"bake",      small.scene(), "-o",        small.path(name),
-                      "--cubemap", "16",          "--effects", "direct"};
-    command.insert(command.end(), more.begin(), more.end());
-    const Outcome outcome = run_opaline(command);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    run_well(join(
+        {"bake", small.scene(), "-o", small.path(name), "--cubemap", "16", "--effects", "direct"},
+        more));
     return small.path(name);
 }
 
@@ -109,7 +107,7 @@ TEST(ReceiverErrors, AreSaidAndVerified) {
     EXPECT_GE(info["receiver_errors"]["max"].get<double>(),
               info["receiver_errors"]["p95"].get<double>());
     EXPECT_THAT(run_opaline({"info", file}).out, HasSubstr("row errors"));
-    EXPECT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    run_well({"verify", file});
 
     const auto section =
         std::find_if(baked.loaded.sections.begin(), baked.loaded.sections.end(),
@@ -118,9 +116,7 @@ TEST(ReceiverErrors, AreSaidAndVerified) {
     std::string text = read_text(file);
     text[section->offset + 5] = static_cast<char>(text[section->offset + 5] ^ 0x10);
     write_file(small.path("damaged.opal"), text);
-    const Outcome info_of_damaged = run_opaline({"info", small.path("damaged.opal")});
-    EXPECT_EQ(info_of_damaged.exit_code, 3);
-    EXPECT_THAT(info_of_damaged.err, HasSubstr("section RERR"));
+    expect_refused({"info", small.path("damaged.opal")}, 3, "section RERR");
 }
 
 TEST(ReceiverErrors, AreShownInPlaceOfLight) {
@@ -128,11 +124,9 @@ TEST(ReceiverErrors, AreShownInPlaceOfLight) {
     const std::string file =
         bake_direct(small, "a.opal", {"--coefficients", "24", "--receiver-errors"});
     const auto draw = [&](const std::string& name, Arguments more) {
-        Arguments command{"render", file,      "--backend", "cpu",   "--size", "96x72",
-                          "--eye",  "0,3,0.1", "--target",  "0,0,0", "-o",     small.path(name)};
-        command.insert(command.end(), more.begin(), more.end());
-        const Outcome outcome = run_opaline(command);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        run_well(join({"render", file, "--backend", "cpu", "--size", "96x72", "--eye", "0,3,0.1",
+                       "--target", "0,0,0", "-o", small.path(name)},
+                      more));
         return formats::read_png(small.path(name))->rgba;
     };
     const auto map = draw("a.png", {"--receiver-errors", "0.000001"});
@@ -152,11 +146,9 @@ TEST(ReceiverErrors, AreShownInPlaceOfLight) {
     EXPECT_EQ(draw("b.png", {"--light", "sun:10,50", "--exposure", "2", "--receiver-errors",
                              std::to_string(3 * largest)}),
               red);
-    const Outcome none =
-        run_opaline({"render", bake_direct(small, "b.opal", {}), "--light", "white",
-                     "--receiver-errors", "0.1", "-o", small.path("n.png")});
-    EXPECT_EQ(none.exit_code, 3);
-    EXPECT_THAT(none.err, HasSubstr("bake it with --receiver-errors"));
+    expect_refused({"render", bake_direct(small, "b.opal", {}), "--light", "white",
+                    "--receiver-errors", "0.1", "-o", small.path("n.png")},
+                   3, "bake it with --receiver-errors");
 }
 
 }  // namespace

@@ -41,12 +41,10 @@ TEST(Reference, TableAgreesWithTheBakeWhereBothMeanTheSameLight) {
     SmallScene small;
     const std::string truth = small.path("truth.csv"), baked = small.path("baked.csv");
     const Outcome reference =
-        run_opaline({"reference", small.scene(), "--light", "white", "--receivers", "5", "--terms",
-                     "diffuse", "--spp", "20000", "-o", truth});
-    ASSERT_EQ(reference.exit_code, 0) << reference.err;
+        run_well({"reference", small.scene(), "--light", "white", "--receivers", "5", "--terms",
+                  "diffuse", "--spp", "20000", "-o", truth});
     EXPECT_THAT(reference.err, HasSubstr("20000 samples for each of 5 receivers"));
-    ASSERT_EQ(run_opaline({"relight", small.baked(), "--light", "white", "-o", baked}).exit_code,
-              0);
+    run_well({"relight", small.baked(), "--light", "white", "-o", baked});
     const std::vector<Row> rows = read_rows(truth);
     ASSERT_EQ(rows.size(), 5u);
     for (const Row& row : rows) {
@@ -54,16 +52,14 @@ TEST(Reference, TableAgreesWithTheBakeWhereBothMeanTheSameLight) {
         EXPECT_LT(row.error[0], 0.01 * row.value[0]);
     }
     // Eight rows against five: those of the ground truth count.
-    const Outcome same = run_opaline({"compare", baked, truth, "--max-rel", "0.01"});
-    EXPECT_EQ(same.exit_code, 0) << same.out << same.err;
+    run_well({"compare", baked, truth, "--max-rel", "0.01"});
 }
 
 TEST(Reference, PictureComesWithItsVariance) {
     SmallScene small;
     const std::string out = small.path("out.exr");
-    const Outcome outcome = run_opaline({"reference", small.scene(), "--light", "studio", "--size",
-                                         "40x30", "--spp", "32", "-o", out});
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    run_well({"reference", small.scene(), "--light", "studio", "--size", "40x30", "--spp", "32",
+              "-o", out});
     const auto mean = formats::read_exr(out),
                variance = formats::read_exr(small.path("out.var.exr"));
     ASSERT_TRUE(mean && variance);
@@ -129,11 +125,8 @@ struct Agreement {
 
 TEST(Reference, StandardErrorsOfTheTableAreHowFarItIsFromAPublishedSlab) {
     SmallScene folder;
-    Arguments arguments = slab_arguments(folder);
-    arguments.insert(arguments.end(),
-                     {"--receivers", "600", "--spp", "400", "-o", folder.path("slab.csv")});
-    const Outcome outcome = run_opaline(arguments);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    run_well(join(slab_arguments(folder),
+                  {"--receivers", "600", "--spp", "400", "-o", folder.path("slab.csv")}));
     Agreement slab;
     for (const Row& row : read_rows(folder.path("slab.csv"))) {
         // The two large faces, ten by ten vertices each, without their edges.
@@ -148,12 +141,9 @@ TEST(Reference, StandardErrorsOfTheTableAreHowFarItIsFromAPublishedSlab) {
 
 TEST(Reference, VarianceOfThePictureIsHowFarItIsFromAPublishedSlab) {
     SmallScene folder;
-    Arguments arguments = slab_arguments(folder);
-    arguments.insert(arguments.end(),
-                     {"--eye", "7,31,50", "--target", "7,31,0", "--fov", "1", "--size", "24x24",
-                      "--spp", "256", "-o", folder.path("slab.exr")});
-    const Outcome outcome = run_opaline(arguments);
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    run_well(join(slab_arguments(folder),
+                  {"--eye", "7,31,50", "--target", "7,31,0", "--fov", "1", "--size", "24x24",
+                   "--spp", "256", "-o", folder.path("slab.exr")}));
     const auto mean = formats::read_exr(folder.path("slab.exr")),
                variance = formats::read_exr(folder.path("slab.var.exr"));
     ASSERT_TRUE(mean && variance);
@@ -178,18 +168,15 @@ TEST(Reference, PictureAgreesWithRender) {
                                    ? Arguments{"--spp", "2000", "--max-depth", "1"}
                                    : Arguments{"--backend", "cpu"};
         arguments.insert(arguments.end(), more.begin(), more.end());
-        ASSERT_EQ(run_opaline(arguments).exit_code, 0);
+        run_well(arguments);
     }
-    const Outcome compared = run_opaline({"compare", baked, truth, "--max-rel", "0.01"});
-    EXPECT_EQ(compared.exit_code, 0) << compared.out;
+    run_well({"compare", baked, truth, "--max-rel", "0.01"});
 }
 
 TEST(Reference, StopsInTime) {
     SmallScene small;
-    const Outcome outcome =
-        run_opaline({"reference", small.scene(), "--light", "white", "--receivers", "3",
-                     "--seconds", "0.2", "-o", small.path("out.csv")});
-    ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+    run_well({"reference", small.scene(), "--light", "white", "--receivers", "3", "--seconds",
+              "0.2", "-o", small.path("out.csv")});
     EXPECT_EQ(read_rows(small.path("out.csv")).size(), 3u);
 }
 
@@ -202,9 +189,8 @@ TEST(Reference, OpenBodiesAreNamedInAWarning) {
               {{"Brick", {{"sigma_s", {1, 1, 1}}, {"sigma_a", {0, 0, 0}}, {"unit", "1/m"}}}}}}
             .dump());
     const Outcome outcome =
-        run_opaline({"reference", small.scene(), "--light", "white", "--receivers", "8", "--spp",
-                     "16", "--media", media, "-o", small.path("out.csv")});
-    EXPECT_EQ(outcome.exit_code, 0);
+        run_well({"reference", small.scene(), "--light", "white", "--receivers", "8", "--spp", "16",
+                  "--media", media, "-o", small.path("out.csv")});
     EXPECT_THAT(outcome.err, HasSubstr("a body that is not closed"));
 }
 
@@ -234,11 +220,8 @@ TEST(Reference, BadArgumentsAreRefusedBeforeAnyWork) {
         {scene, "--light", "dark", "-o", exr, "--size", "4x4", "--spp", "1", "--seed", "-1"},
         {scene, "--light", "sun:x", "-o", exr},
     };
-    for (Arguments arguments : bad) {
-        arguments.insert(arguments.begin(), "reference");
-        const Outcome outcome = run_opaline(arguments);
-        EXPECT_EQ(outcome.exit_code, 2) << ::testing::PrintToString(arguments) << outcome.err;
-        EXPECT_THAT(outcome.err, StartsWith("opaline: error: "));
+    for (const Arguments& arguments : bad) {
+        expect_refused(join({"reference"}, arguments), 2, "");
         EXPECT_EQ(list_folder(small.folder()), before);
     }
     EXPECT_EQ(

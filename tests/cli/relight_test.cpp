@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "formats/image/exr.h"
-#include "formats/opal/write_opal.h"
 #include "tests/cli/small_scene.h"
 #include "tests/formats/opal/asset_fixture.h"
 
@@ -21,7 +20,7 @@ using ::testing::HasSubstr;
 TEST(Relight, TableHasARowForEveryVertexInTheOrderOfTheScene) {
     SmallScene small;
     const std::string out = small.path("out.csv");
-    ASSERT_EQ(run_opaline({"relight", small.baked(), "--light", "white", "-o", out}).exit_code, 0);
+    run_well({"relight", small.baked(), "--light", "white", "-o", out});
     std::istringstream table(read_text(out));
     std::string line;
     std::getline(table, line);
@@ -44,9 +43,7 @@ TEST(Relight, TableHasARowForEveryVertexInTheOrderOfTheScene) {
 TEST(Relight, PointsAndPixelsHoldWhatTheTableHolds) {
     SmallScene small;
     for (const char* name : {"out.ply", "out.exr"}) {
-        const Outcome outcome =
-            run_opaline({"relight", small.baked(), "--light", "studio", "-o", small.path(name)});
-        ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+        run_well({"relight", small.baked(), "--light", "studio", "-o", small.path(name)});
     }
     EXPECT_THAT(read_text(small.path("out.ply")), HasSubstr("element vertex 8\n"));
     EXPECT_TRUE(formats::read_exr(small.path("out.exr")));
@@ -63,7 +60,7 @@ TEST(Relight, TurningTheLightOnceAroundChangesNothing) {
     ASSERT_EQ(relight(a, "0"), 0);
     ASSERT_EQ(relight(b, "360"), 0);
     ASSERT_EQ(relight(c, "180"), 0);
-    EXPECT_EQ(run_opaline({"compare", a, b, "--max-rel", "1e-4"}).exit_code, 0);
+    run_well({"compare", a, b, "--max-rel", "1e-4"});
     EXPECT_EQ(run_opaline({"compare", a, c, "--max-rel", "1e-2"}).exit_code, 1);
 }
 
@@ -71,10 +68,18 @@ TEST(Relight, TurningTheLightOnceAroundChangesNothing) {
 std::string write_translucent(const SmallScene& small) {
     formats::Asset asset = make_small_asset();
     add_translucent_triangle(asset, 9, 1.3f);
-    const std::string path = small.path("translucent.opal");
-    auto file = formats::AtomicFile::create(path);
-    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
-    return path;
+    return small.write(asset, "translucent.opal");
+}
+
+/// The picture by OpenGL, which differs from that of the CPU by at most `most` (relative RMSE).
+formats::Image draw_on_both(const SmallScene& small, const std::string& file,
+                            const Arguments& options, const char* most = "2e-3") {
+    const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
+    for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
+        run_well(join({"render", file, "--backend", backend, "-o", out}, options));
+    }
+    run_well({"compare", gl, cpu, "--max-rel", most});
+    return std::move(*formats::read_exr(gl));
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -89,14 +94,11 @@ std::vector<std::string> lines_of(const std::string& text) {
 TEST(Relight, TheEyeChangesTranslucentReceiversAlone) {
     SmallScene small;
     const std::string file = write_translucent(small);
-    ASSERT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    run_well({"verify", file});
     int run = 0;
     const auto table = [&](const Arguments& eye) {
         const std::string out = small.path("table" + std::to_string(run++) + ".csv");
-        Arguments arguments{"relight", file, "--light", "sky:3,40", "-o", out};
-        arguments.insert(arguments.end(), eye.begin(), eye.end());
-        const Outcome outcome = run_opaline(arguments);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        run_well(join({"relight", file, "--light", "sky:3,40", "-o", out}, eye));
         return lines_of(read_text(out));
     };
     const auto own = table({}), aside = table({"--eye", "5,1,2"}),
@@ -117,13 +119,10 @@ TEST(Relight, TheEyeChangesTranslucentReceiversAlone) {
     EXPECT_GT(lit, 0u);
     // From far away along the normal: as without an eye, up to the angle of a metre in 1e6.
     const std::string a = small.path("own.csv"), b = small.path("far.csv");
-    ASSERT_EQ(run_opaline({"relight", file, "--light", "white", "-o", a}).exit_code, 0);
-    ASSERT_EQ(
-        run_opaline({"relight", file, "--light", "white", "--eye", "0,0,1e6", "-o", b}).exit_code,
-        0);
-    EXPECT_EQ(run_opaline({"compare", a, b, "--max-rel", "1e-4"}).exit_code, 0);
-    const Outcome bad = run_opaline({"relight", file, "--light", "white", "--eye", "1,2", "-o", a});
-    EXPECT_EQ(bad.exit_code, 2);
+    run_well({"relight", file, "--light", "white", "-o", a});
+    run_well({"relight", file, "--light", "white", "--eye", "0,0,1e6", "-o", b});
+    run_well({"compare", a, b, "--max-rel", "1e-4"});
+    expect_refused({"relight", file, "--light", "white", "--eye", "1,2", "-o", a}, 2, "");
 }
 
 /// The same with gloss, and with multiple scattering apart if asked for.
@@ -131,10 +130,7 @@ std::string write_glossy(const SmallScene& small, bool is_separate) {
     formats::Asset asset = make_small_asset();
     add_translucent_triangle(asset, is_separate ? 10 : 9, 1.3f, is_separate);
     add_gloss(asset);
-    const std::string path = small.path(is_separate ? "separate.opal" : "merged.opal");
-    auto file = formats::AtomicFile::create(path);
-    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
-    return path;
+    return small.write(asset, is_separate ? "separate.opal" : "merged.opal");
 }
 
 TEST(Terms, UnknownNamesAreRefusedWithTheList) {
@@ -143,10 +139,8 @@ TEST(Terms, UnknownNamesAreRefusedWithTheList) {
     for (const char* command : {"relight", "render"}) {
         const std::string out = small.path(command == std::string("relight") ? "o.csv" : "o.png");
         for (const char* terms : {"sparkle", "multiple,", ",single", "diffuse;single", "Diffuse"}) {
-            const Outcome bad =
-                run_opaline({command, file, "--light", "white", "--terms", terms, "-o", out});
-            EXPECT_EQ(bad.exit_code, 2) << terms;
-            EXPECT_THAT(bad.err, HasSubstr("multiple,single,specular,diffuse"));
+            expect_refused({command, file, "--light", "white", "--terms", terms, "-o", out}, 2,
+                           "multiple,single,specular,diffuse");
             EXPECT_FALSE(std::filesystem::exists(out));
         }
     }
@@ -157,10 +151,8 @@ TEST(Terms, AllIsTheDefault) {
     SmallScene small;
     const std::string file = write_glossy(small, false);
     const std::string plain = small.path("plain.csv"), all = small.path("all.csv");
-    ASSERT_EQ(run_opaline({"relight", file, "--light", "studio", "-o", plain}).exit_code, 0);
-    const Outcome named =
-        run_opaline({"relight", file, "--light", "studio", "--terms", "all", "-o", all});
-    ASSERT_EQ(named.exit_code, 0) << named.err;
+    run_well({"relight", file, "--light", "studio", "-o", plain});
+    run_well({"relight", file, "--light", "studio", "--terms", "all", "-o", all});
     EXPECT_EQ(read_text(plain), read_text(all));
 }
 
@@ -175,10 +167,8 @@ TEST(Terms, MergedFilesSayWhatToDoForOneOfTheirTerms) {
         EXPECT_THAT(bad.err, HasSubstr("(bake with --separate-terms"));
     }
     for (const char* terms : {"multiple,single", "specular", "diffuse,specular"}) {
-        EXPECT_EQ(run_opaline({"render", merged, "--light", "white", "--terms", terms, "--size",
-                               "16x16", "-o", out})
-                      .exit_code,
-                  0);
+        run_well(
+            {"render", merged, "--light", "white", "--terms", terms, "--size", "16x16", "-o", out});
     }
 }
 
@@ -191,8 +181,7 @@ TEST(Terms, TablesOfAllComponentsAddUpToTheWhole) {
         const std::string out = small.path("t-" + terms + ".csv");
         Arguments arguments{"relight", file, "--light", "sky:3,40", "--eye", "1,1,3", "-o", out};
         if (!terms.empty()) arguments.insert(arguments.end(), {"--terms", terms});
-        const Outcome outcome = run_opaline(arguments);
-        EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+        run_well(arguments);
         std::vector<std::array<double, 3>> values;
         for (const std::string& line : lines_of(read_text(out))) {
             std::array<double, 3> v{};
@@ -222,25 +211,17 @@ TEST(Terms, BackendsAgreeOnComponentsOverBlack) {
     SmallScene small;
     const std::string file = write_glossy(small, true);
     for (const char* terms : {"multiple", "specular", "diffuse", "single,specular"}) {
-        const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
-        for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
-            const Outcome render =
-                run_opaline({"render", file, "--light", "studio", "--size", "83x57", "--eye",
-                             "2,1,3", "--terms", terms, "--backend", backend, "-o", out});
-            ASSERT_EQ(render.exit_code, 0) << render.err;
-        }
-        const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
-        EXPECT_EQ(same.exit_code, 0) << terms << "\n" << same.out;
-        const auto image = formats::read_exr(gl);
-        ASSERT_TRUE(image);
-        EXPECT_EQ(image->pixel.front(), formats::Rgb{});
+        const formats::Image image = draw_on_both(
+            small, file,
+            {"--light", "studio", "--size", "83x57", "--eye", "2,1,3", "--terms", terms});
+        EXPECT_EQ(image.pixel.front(), formats::Rgb{});
     }
 }
 
 TEST(Info, SaysWhatIsGlossyAndSeparate) {
     SmallScene small;
     const std::string file = write_glossy(small, true);
-    ASSERT_EQ(run_opaline({"verify", file}).exit_code, 0);
+    run_well({"verify", file});
     const Outcome info = run_opaline({"info", file});
     EXPECT_THAT(info.out, HasSubstr("multiple and single separate, roughness 0.3"));
     EXPECT_THAT(info.out, HasSubstr("SPEC"));
@@ -249,15 +230,8 @@ TEST(Info, SaysWhatIsGlossyAndSeparate) {
 
 TEST(Render, BackendsAgreeOnTranslucentPrimitives) {
     SmallScene small;
-    const std::string file = write_translucent(small);
-    const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
-    for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
-        const Outcome render = run_opaline({"render", file, "--light", "studio", "--size", "83x57",
-                                            "--eye", "2,1,3", "--backend", backend, "-o", out});
-        ASSERT_EQ(render.exit_code, 0) << render.err;
-    }
-    const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
-    EXPECT_EQ(same.exit_code, 0) << same.out;
+    draw_on_both(small, write_translucent(small),
+                 {"--light", "studio", "--size", "83x57", "--eye", "2,1,3"});
 }
 
 // Seen from above and from below.
@@ -268,27 +242,17 @@ TEST(Render, BackendsAgreeOnBothSidesOfThinWalledSurfaces) {
                                                    "transmit": [0.6, 0.5, 0.4]}}}})";
     const std::string file = small.path("leaf.opal");
     // Without the light that surfaces send to each other, which has no such ratio.
-    const Outcome baked = run_opaline({"bake", small.scene(), "--media", small.path("leaf.json"),
-                                       "--effects", "sheet,gloss", "--cubemap", "8", "-o", file});
-    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+    run_well({"bake", small.scene(), "--media", small.path("leaf.json"), "--effects", "sheet,gloss",
+              "--cubemap", "8", "-o", file});
     EXPECT_THAT(run_opaline({"info", file}).out, HasSubstr("2 term(s), RGB, thin-walled"));
     for (const char* elevation : {"60", "-60"}) {
-        const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
-        for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
-            const Outcome render =
-                run_opaline({"render", file, "--light", "sun:40,60", "--size", "61x43",
-                             "--elevation", elevation, "--backend", backend, "-o", out});
-            ASSERT_EQ(render.exit_code, 0) << render.err;
-        }
-        const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "1e-2"});
-        EXPECT_EQ(same.exit_code, 0) << elevation << same.out << "a pixel or two at edges";
+        draw_on_both(small, file,
+                     {"--light", "sun:40,60", "--size", "61x43", "--elevation", elevation}, "1e-2");
     }
     // A sun 60 degrees high, from below: the transmitted share, in the ratio of its bands.
     const auto relit = [&](const char* eye) {
         const std::string table = small.path("t.csv");
-        EXPECT_EQ(run_opaline({"relight", file, "--light", "sun:40,60", "--eye", eye, "-o", table})
-                      .exit_code,
-                  0);
+        run_well({"relight", file, "--light", "sun:40,60", "--eye", eye, "-o", table});
         double r = 0, g = 0, b = 0;
         const std::string text = read_text(table);
         EXPECT_EQ(std::sscanf(text.c_str() + text.rfind("1,3,"), "1,3,%lf,%lf,%lf", &r, &g, &b), 3);
@@ -301,18 +265,10 @@ TEST(Render, BackendsAgreeOnBothSidesOfThinWalledSurfaces) {
 
 TEST(Render, PicturesHaveTheSizeAskedForAndAgreeBetweenBackends) {
     SmallScene small;
-    const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
-    for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
-        const Outcome render = run_opaline({"render", small.baked(), "--light", "studio", "--size",
-                                            "83x57", "--backend", backend, "-o", out});
-        ASSERT_EQ(render.exit_code, 0) << render.err;
-    }
-    const auto image = formats::read_exr(gl);
-    ASSERT_TRUE(image);
-    EXPECT_EQ(image->width, 83u);
-    EXPECT_EQ(image->height, 57u);
-    const Outcome same = run_opaline({"compare", gl, cpu, "--max-rel", "2e-3"});
-    EXPECT_EQ(same.exit_code, 0) << same.out;
+    const formats::Image image =
+        draw_on_both(small, small.baked(), {"--light", "studio", "--size", "83x57"});
+    EXPECT_EQ(image.width, 83u);
+    EXPECT_EQ(image.height, 57u);
 }
 
 TEST(Render, ExposureOfOneDoublesLinearRadiance) {
@@ -320,11 +276,8 @@ TEST(Render, ExposureOfOneDoublesLinearRadiance) {
     const std::string a = small.path("a.exr"), b = small.path("b.exr");
     const Arguments base = {"render",    small.baked(), "--light", "white",
                             "--backend", "cpu",         "--size",  "16x16"};
-    Arguments plain = base, brighter = base;
-    plain.insert(plain.end(), {"-o", a});
-    brighter.insert(brighter.end(), {"-o", b, "--exposure", "1"});
-    ASSERT_EQ(run_opaline(plain).exit_code, 0);
-    ASSERT_EQ(run_opaline(brighter).exit_code, 0);
+    run_well(join(base, {"-o", a}));
+    run_well(join(base, {"-o", b, "--exposure", "1"}));
     const auto dim = formats::read_exr(a), bright = formats::read_exr(b);
     ASSERT_TRUE(dim && bright);
     for (std::size_t i = 0; i < dim->pixel.size(); ++i) {
@@ -334,18 +287,16 @@ TEST(Render, ExposureOfOneDoublesLinearRadiance) {
 
 TEST(Render, TurntableNumbersItsPictures) {
     SmallScene small;
-    const Outcome render = run_opaline({"render", small.baked(), "--light", "white", "--size",
-                                        "16x16", "--frames", "3", "-o", small.path("t.png")});
-    ASSERT_EQ(render.exit_code, 0) << render.err;
+    run_well({"render", small.baked(), "--light", "white", "--size", "16x16", "--frames", "3", "-o",
+              small.path("t.png")});
     EXPECT_EQ(list_folder(small.folder()),
               (Arguments{"scene.glb", "scene.opal", "t-0001.png", "t-0002.png", "t-0003.png"}));
 }
 
 TEST(Render, StatisticsArePrintedOnRequest) {
     SmallScene small;
-    const Outcome render = run_opaline({"render", small.baked(), "--light", "white", "--size",
-                                        "16x16", "--stats", "-o", small.path("t.png")});
-    ASSERT_EQ(render.exit_code, 0) << render.err;
+    const Outcome render = run_well({"render", small.baked(), "--light", "white", "--size", "16x16",
+                                     "--stats", "-o", small.path("t.png")});
     EXPECT_THAT(render.out + render.err, HasSubstr("ms"));
 }
 

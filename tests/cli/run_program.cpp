@@ -1,15 +1,22 @@
 #include "tests/cli/run_program.h"
 
 #include <fcntl.h>
+#include <gmock/gmock.h>
 #include <spawn.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
+#include "bake/cli/program.h"
+#include "formats/vdb/answer_vdb_request.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::tests {
@@ -19,14 +26,46 @@ Arguments join(Arguments a, const Arguments& b) {
     return a;
 }
 
-Outcome run_any(const Arguments& command, const std::function<void(int)>& when_started) {
-    const TemporaryFolder folder;
-    const std::string out = folder / "out", err = folder / "err";
+namespace {
+
+std::vector<char*> pointers(const Arguments& command) {
     std::vector<char*> argv;
     for (const std::string& argument : command) {
         argv.push_back(const_cast<char*>(argument.c_str()));
     }
     argv.push_back(nullptr);
+    return argv;
+}
+
+// Sends one of this process's streams into a file, until the end of its scope.
+class Redirection {
+  public:
+    Redirection(std::FILE* stream, const std::string& path)
+        : stream_(stream), kept_(::dup(::fileno(stream))) {
+        const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+        std::fflush(stream_);
+        ::dup2(file, ::fileno(stream_));
+        ::close(file);
+    }
+    Redirection(const Redirection&) = delete;
+    Redirection& operator=(const Redirection&) = delete;
+    ~Redirection() {
+        std::fflush(stream_);
+        ::dup2(kept_, ::fileno(stream_));
+        ::close(kept_);
+    }
+
+  private:
+    std::FILE* stream_;
+    int kept_;
+};
+
+}  // namespace
+
+Outcome run_any(const Arguments& command, const std::function<void(int)>& when_started) {
+    const TemporaryFolder folder;
+    const std::string out = folder / "out", err = folder / "err";
+    std::vector<char*> argv = pointers(command);
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
@@ -59,11 +98,45 @@ Outcome run_any(const Arguments& command, const std::function<void(int)>& when_s
     return {code, read_text(out), read_text(err)};
 }
 
-Outcome run_opaline(Arguments arguments, const std::function<void(int)>& when_started) {
-    // What its bakes teach and its test lights are not put into the user's cache.
-    arguments.insert(arguments.begin(),
-                     {"env", std::string("XDG_CACHE_HOME=") + OPALINE_TEST_CACHE, OPALINE_PROGRAM});
+Outcome start_opaline(Arguments arguments, const std::function<void(int)>& when_started) {
+    arguments.insert(arguments.begin(), OPALINE_PROGRAM);
     return run_any(arguments, when_started);
+}
+
+Outcome run_opaline(Arguments arguments) {
+    arguments.insert(arguments.begin(), "opaline");
+    const TemporaryFolder folder;
+    const std::string out = folder / "out", err = folder / "err";
+    const std::vector<char*> argv = pointers(arguments);
+    int code = 0;
+    {
+        const Redirection to_out(stdout, out), to_err(stderr, err);
+        code = cli::run_program(static_cast<int>(arguments.size()), argv.data());
+    }
+    return {code, read_text(out), read_text(err)};
+}
+
+Outcome run_with_cache(const std::filesystem::path& cache, const Arguments& arguments) {
+    ::setenv("XDG_CACHE_HOME", cache.c_str(), 1);
+    Outcome outcome = run_opaline(arguments);
+    ::setenv("XDG_CACHE_HOME", OPALINE_TEST_CACHE, 1);
+    return outcome;
+}
+
+Outcome run_well(Arguments arguments) {
+    const std::string line = ::testing::PrintToString(arguments);
+    Outcome outcome = run_opaline(std::move(arguments));
+    EXPECT_EQ(outcome.exit_code, 0) << line << outcome.err;
+    return outcome;
+}
+
+void expect_refused(const Arguments& arguments, int exit_code, const std::string& part) {
+    const Outcome outcome = run_opaline(arguments);
+    const std::string line = ::testing::PrintToString(arguments);
+    EXPECT_EQ(outcome.exit_code, exit_code) << line << outcome.err;
+    EXPECT_THAT(outcome.err, ::testing::StartsWith("opaline: error: ")) << line;
+    EXPECT_THAT(outcome.err, ::testing::HasSubstr(part)) << line;
+    EXPECT_EQ(outcome.out, "") << line;
 }
 
 std::vector<std::string> list_folder(const std::filesystem::path& folder) {
@@ -86,3 +159,14 @@ std::size_t count_lines(const std::filesystem::path& path) {
 }
 
 }  // namespace opaline::tests
+
+// As main of the program does: the process that reads OpenVDB files is this one, started again.
+int main(int argc, char** argv) {
+    if (opaline::formats::is_vdb_request(argc, argv)) {
+        opaline::formats::answer_vdb_request(argc, argv);
+    }
+    // What bakes teach and their test lights are not put into the user's cache.
+    ::setenv("XDG_CACHE_HOME", OPALINE_TEST_CACHE, 1);
+    ::testing::InitGoogleMock(&argc, argv);
+    return RUN_ALL_TESTS();
+}

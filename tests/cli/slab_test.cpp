@@ -40,11 +40,7 @@ TEST(Slab, PrintsTheSharesOfTheReferenceTable) {
 
 TEST(Slab, EveryMethodSplitsTheSameLightByOrder) {
     const Arguments layer = {"--optical-depth", "2", "--g", "0.7", "--cosine", "0.6"};
-    const auto with = [&](const Arguments& more) {
-        Arguments all = layer;
-        all.insert(all.end(), more.begin(), more.end());
-        return slab(all);
-    };
+    const auto with = [&](const Arguments& more) { return slab(join(layer, more)); };
     const Json adding = with({"--orders", "3"});
     for (const auto& [arguments, tolerance] :
          {std::pair{Arguments{"--method", "model"}, 0.02},
@@ -77,9 +73,7 @@ TEST(Slab, ViewsOfEveryMethodSeeTheSameLight) {
     const Arguments layer = {"--optical-depth", "1",   "--g",     "0.7",
                              "--cosine",        "0.6", "--views", "8"};
     const auto with = [&](const char* method) {
-        Arguments all = layer;
-        all.insert(all.end(), {"--method", method});
-        return slab(all).at("views");
+        return slab(join(layer, {"--method", method})).at("views");
     };
     const Json solved = with("adding"), table = with("table"), model = with("model");
     ASSERT_EQ(solved.size(), 8u);
@@ -126,9 +120,7 @@ TEST(Slab, RefractingBoundariesReflectAsPublished) {
     const Arguments layer = {"--optical-depth", "60", "--albedo", "0.9", "--g", "0",
                              "--eta",           "1.5"};
     EXPECT_NEAR(number(slab(layer), "reflectance"), 0.2600, 1.5e-4);
-    Arguments photons = layer;
-    photons.insert(photons.end(), {"--method", "monte-carlo", "--photons", "100000"});
-    const Json walk = slab(photons);
+    const Json walk = slab(join(layer, {"--method", "monte-carlo", "--photons", "100000"}));
     EXPECT_NEAR(number(walk, "reflectance"), 0.26, 4 * number(walk, "reflectance_standard_error"));
     EXPECT_NEAR(number(walk.at("by_order").at(0), "reflectance"), 0.04,
                 4 * number(walk.at("by_order").at(0), "reflectance_standard_error"));
@@ -157,9 +149,8 @@ TEST(Slab, TablesOfThePhaseFunctionAreAnInput) {
 
 TEST(Slab, CsvHoldsTheNumbersOfTheJson) {
     const Json json = slab({"--optical-depth", "1", "--g", "0.5", "--orders", "2", "--json"});
-    const Outcome csv = run_opaline(
+    const Outcome csv = run_well(
         {"slab", "--optical-depth", "1", "--g", "0.5", "--orders", "2", "--format", "csv"});
-    EXPECT_EQ(csv.exit_code, 0) << csv.err;
     std::map<std::string, double> value;
     std::istringstream lines(csv.out);
     std::string line;
@@ -199,13 +190,7 @@ TEST(Slab, BadLayersExitWithTwoAndSayWhatIsAccepted) {
          "--streams"},
         {{"--optical-depth", "1e4", "--g", "0", "--method", "monte-carlo"}, "too long"}};
     for (const auto& [arguments, says] : bad) {
-        Arguments all = arguments;
-        all.insert(all.begin(), "slab");
-        const Outcome outcome = run_opaline(all);
-        EXPECT_EQ(outcome.exit_code, 2) << ::testing::PrintToString(all) << outcome.err;
-        EXPECT_THAT(outcome.err, StartsWith("opaline: error: "));
-        EXPECT_THAT(outcome.err, HasSubstr(says));
-        EXPECT_EQ(outcome.out, "");
+        expect_refused(join({"slab"}, arguments), 2, says);
     }
 }
 

@@ -1,6 +1,12 @@
 #include "tests/cli/small_scene.h"
 
 #include <cmath>
+#include <map>
+#include <utility>
+
+#include "formats/image/exr.h"
+#include "formats/opal/rgb.h"
+#include "formats/opal/write_opal.h"
 
 namespace opaline::tests {
 namespace {
@@ -61,18 +67,38 @@ AssetBuilder wavy_sheet(unsigned n) {
     return asset;
 }
 
+double mean_of_picture(const std::string& path) {
+    const auto picture = formats::read_exr(path);
+    EXPECT_TRUE(picture) << path;
+    double sum = 0;
+    for (const formats::Rgb& pixel : picture->pixel) {
+        sum += static_cast<double>(formats::luminance(pixel));
+    }
+    return sum / static_cast<double>(picture->pixel.size());
+}
+
 SmallScene::SmallScene() {
     write_file(scene(), two_squares().glb());
 }
 
 std::string SmallScene::baked() {
+    static std::map<std::string, std::string> bakes;  // by the scene's bytes
     const std::string file = path("scene.opal");
-    if (!std::filesystem::exists(file)) {
-        const Outcome bake =
-            run_opaline({"bake", scene(), "-o", file, "--cubemap", "16", "--coefficients", "all"});
-        EXPECT_EQ(bake.exit_code, 0) << bake.err;
+    if (std::filesystem::exists(file)) return file;
+    std::string& bake = bakes[read_text(scene())];
+    if (bake.empty()) {
+        run_well({"bake", scene(), "-o", file, "--cubemap", "16", "--coefficients", "all"});
+        bake = read_text(file);
+    } else {
+        write_file(file, bake);
     }
     return file;
+}
+
+std::string SmallScene::write(const formats::Asset& asset, const std::string& name) const {
+    auto file = formats::AtomicFile::create(path(name));
+    EXPECT_TRUE(file && formats::write_opal(asset.view(), std::move(*file)));
+    return path(name);
 }
 
 }  // namespace opaline::tests

@@ -206,8 +206,8 @@ TEST(TranslucentPipeline, ScalingSceneAndMediumTogetherChangesNothing) {
     options.set(kPhaseTerms, 4);
     leave_bounces_out(options);
     const BakeResult metres = bake_scene(scene, options);
-    // A power of two is exact in floats but for where rays start; a thousandth rounds everywhere.
-    for (const float scale : {1024.0f, 0.001f}) {
+    // A power of two is exact in floats but for where rays start; others round everywhere.
+    for (const float scale : {1024.0f, 1e-6f, 1e6f}) {
         auto scaled = scene;
         for (formats::Primitive& p : scaled.primitives) {
             p = tests::transformed(p, glm::mat3(1), scale, glm::vec3(0));
@@ -219,7 +219,7 @@ TEST(TranslucentPipeline, ScalingSceneAndMediumTogetherChangesNothing) {
         for (const char* light : kLights) {
             EXPECT_LT(relative_rms(relight_primitive(result.asset, light),
                                    relight_primitive(metres.asset, light)),
-                      scale > 1 ? 1e-4 : 2e-3)
+                      scale == 1024 ? 1e-4 : 2e-3)
                 << light << ' ' << scale;
         }
     }
@@ -283,21 +283,6 @@ TEST(TranslucentPipeline, SelfCheckNamesEffectsAndLights) {
     EXPECT_EQ(names(error.at_receivers.by_light),
               (Names{"white", "sun:30,60", "sun:150,35", "sun:270,15", "studio", "sky:3,35"}));
     EXPECT_GT(error.rms_relative, 0);
-}
-
-TEST(TranslucentPipeline, OpenAndInsideOutBodiesAreReported) {
-    auto ball = tests::turned_inside_out(tests::make_sphere(2));
-    ball.index.resize(ball.index.size() - 3);
-    const BakeResult result =
-        bake_scene(tests::make_translucent_scene({ball}, wax()), only({"multiple"}));
-    ASSERT_GE(result.warnings.size(), 2u);
-    EXPECT_NE(result.warnings[0].fault.find("turned outward"), std::string::npos);
-    EXPECT_NE(result.warnings[1].fault.find("open at 3 edges"), std::string::npos);
-    for (const formats::Diagnostic& warning :
-         bake_scene(make_ball_on_floor(wax()), only({"multiple"})).warnings) {
-        EXPECT_EQ(warning.fault.find("turned outward"), std::string::npos);
-        EXPECT_EQ(warning.fault.find("open at"), std::string::npos);
-    }
 }
 
 }  // namespace

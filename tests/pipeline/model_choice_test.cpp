@@ -19,14 +19,25 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
+constexpr double kAutomatic = static_cast<double>(MultipleModel::automatic);
+
+// A ball of radius 1; mean chord 4 / 3.
+tests::Scene make_ball(float sigma_t, float albedo, float g = 0, float eta = 1.3f) {
+    formats::Medium medium = tests::make_grey_medium(albedo * sigma_t, (1 - albedo) * sigma_t, eta);
+    if (g != 0) medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, g, 0, {}, {}};
+    return tests::make_translucent_scene({tests::make_sphere(2)}, medium);
+}
+
+PlanEntry planned_entry(const tests::Scene& scene, const BakeOptions& options, const char* rule) {
+    return *find_entry(
+        plan_bake(all_effects(), scene, inspect_scene(scene), *resolve_knobs(options)), rule, 0);
+}
+
 TEST(ModelChoice, AutoWalksAtProductionWhereTheDipoleWasMeasuredToErr) {
     const auto bake_of = [](float sigma_t) {
-        BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+        BakeOptions options = bake_by(kAutomatic, 20000);
         options.quality = Quality::production;
-        return tests::bake_scene(
-            tests::make_translucent_scene({tests::make_sphere(2)},
-                                          tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t)),
-            options);
+        return tests::bake_scene(make_ball(sigma_t, 0.9f), options);
     };
     const PlanEntry thin = entry_of(bake_of(3), "multiple.model");
     EXPECT_TRUE(thin.on);
@@ -39,20 +50,17 @@ TEST(ModelChoice, AutoWalksAtProductionWhereTheDipoleWasMeasuredToErr) {
 // Draft and preview measure nothing: the plan already knows.
 TEST(ModelChoice, AutoWalksAtDraftAndPreviewWhereTheDipoleIsEstimatedToErrByMore) {
     const auto entries = [](float sigma_t, Quality quality) {
-        BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+        BakeOptions options = bake_by(kAutomatic, 20000);
         options.quality = quality;
-        const tests::Scene ball = tests::make_translucent_scene(
-            {tests::make_sphere(2)}, tests::make_grey_medium(0.9f * sigma_t, 0.1f * sigma_t));
-        const PlanEntry planned = *find_entry(
-            plan_bake(all_effects(), ball, inspect_scene(ball), *resolve_knobs(options)),
-            "multiple.model", 0);
+        const tests::Scene ball = make_ball(sigma_t, 0.9f);
+        const PlanEntry planned = planned_entry(ball, options, "multiple.model");
         const PlanEntry baked = entry_of(tests::bake_scene(ball, options), "multiple.model");
         EXPECT_EQ(planned.on, baked.on);
         EXPECT_EQ(planned.choice, baked.choice);
         EXPECT_EQ(planned.reason, baked.reason);
         return baked;
     };
-    // Mean chord 4 / 3: 4, 53 and 4000 transport mean free paths.
+    // 4, 53 and 4000 transport mean free paths across.
     EXPECT_THAT(entries(3, Quality::draft).reason, StartsWith("walks: the dipole takes"));
     EXPECT_EQ(entries(40, Quality::draft).choice, "dipole");
     EXPECT_EQ(entries(40, Quality::preview).choice, "walks");
@@ -63,7 +71,7 @@ TEST(ModelChoice, AutoWalksAtDraftAndPreviewWhereTheDipoleIsEstimatedToErrByMore
 TEST(ModelChoice, AutoFindsByRaysHowThickAnOpenBodyIs) {
     const auto entry = [](std::vector<tests::Primitive> body, float sigma_t,
                           const char* rule = "multiple.model") {
-        const BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+        const BakeOptions options = bake_by(kAutomatic, 20000);
         return entry_of(
             tests::bake_scene(tests::make_translucent_scene(
                                   std::move(body), tests::make_grey_medium(sigma_t, 0.01f)),
@@ -88,7 +96,7 @@ TEST(ModelChoice, AutoFindsByRaysHowThickAnOpenBodyIs) {
 TEST(ModelChoice, AutoKeepsTheDipoleWhereAMediumNamesItsProfile) {
     formats::Medium medium = tests::make_grey_medium(2.97f, 0.03f);
     medium.profile = formats::Medium::Profile::classic;
-    BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 20000);
+    BakeOptions options = bake_by(kAutomatic, 20000);
     for (const Quality quality : {Quality::preview, Quality::production}) {
         options.quality = quality;
         EXPECT_EQ(
@@ -102,8 +110,7 @@ TEST(ModelChoice, AutoKeepsTheDipoleWhereAMediumNamesItsProfile) {
 
 TEST(ModelChoice, LightScatteredOnceIsLeftToWalksThatStandCloseAndToNoOtherModel) {
     const auto effects_on = [](float sigma_t, double model, bool apart = false) {
-        const tests::Scene ball = tests::make_translucent_scene(
-            {tests::make_sphere(2)}, tests::make_grey_medium(0.99f * sigma_t, 0.01f * sigma_t));
+        const tests::Scene ball = make_ball(sigma_t, 0.99f);
         Knobs knobs;
         knobs.quality = Quality::production;
         knobs.separate_terms = apart;
@@ -119,7 +126,7 @@ TEST(ModelChoice, LightScatteredOnceIsLeftToWalksThatStandCloseAndToNoOtherModel
     };
     const std::vector<std::string> apart{"multiple", "single"}, together{"multiple"};
     EXPECT_EQ(effects_on(3, kWalked), together);
-    EXPECT_EQ(effects_on(3, static_cast<double>(MultipleModel::automatic)), together);
+    EXPECT_EQ(effects_on(3, kAutomatic), together);
     EXPECT_EQ(effects_on(3, kDipole), apart);
     EXPECT_EQ(effects_on(300, kWalked), apart) << "1500 sites would blur it";
     EXPECT_EQ(effects_on(3, kWalked, true), apart) << "--separate-terms";
@@ -130,19 +137,12 @@ TEST(ModelChoice, LightScatteredOnceIsLeftToWalksThatStandCloseAndToNoOtherModel
 // larger.
 TEST(ModelChoice, MediaThatScatterInAPeakAreLeftToWalksHoweverThickTheBody) {
     const auto choice = [](float g, Quality quality, bool fixed = false) {
-        formats::Medium medium = tests::make_grey_medium(2700, 300);
-        medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-        medium.phase.g = g;
-        if (fixed) {
-            medium.profile = formats::Medium::Profile::better;
-        }
-        const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(2)}, medium);
-        BakeOptions options = bake_by(static_cast<double>(MultipleModel::automatic), 2000);
+        tests::Scene ball = make_ball(3000, 0.9f, g);
+        if (fixed) ball.materials[0].medium->profile = formats::Medium::Profile::better;
+        BakeOptions options = bake_by(kAutomatic, 2000);
         options.quality = quality;
         options.effects = {"multiple", "single"};
-        const PlanEntry planned = *find_entry(
-            plan_bake(all_effects(), ball, inspect_scene(ball), *resolve_knobs(options)),
-            "multiple.model", 0);
+        const PlanEntry planned = planned_entry(ball, options, "multiple.model");
         if (quality == Quality::draft) {
             const BakeResult baked = tests::bake_scene(ball, options);
             EXPECT_EQ(entry_of(baked, "multiple.model").choice, planned.choice) << g;
@@ -187,20 +187,16 @@ TEST(ModelChoice, ErrorAskedForIsThatOfTheModelAndTheNumbersTogether) {
         BakeOptions options = tests::only({"multiple"});
         options.error = error;
         options.set(kMultipleModel, model);
-        return tests::bake_scene(
-            tests::make_translucent_scene(
-                {tests::make_sphere(2)}, tests::make_grey_medium(0.99f * sigma_t, 0.01f * sigma_t)),
-            options);
+        return tests::bake_scene(make_ball(sigma_t, 0.99f), options);
     };
-    const double automatic = static_cast<double>(MultipleModel::automatic);
-    const BakeResult thick = bake_of(100, 0.2, automatic);
+    const BakeResult thick = bake_of(100, 0.2, kAutomatic);
     const PlanEntry dipole = entry_of(thick, "multiple.model");
     EXPECT_FALSE(dipole.on);
     EXPECT_GT(dipole.model_error, 0.01);
     EXPECT_DOUBLE_EQ(thick.accuracy->model, dipole.model_error);
     EXPECT_NEAR(std::hypot(thick.accuracy->model, thick.accuracy->numerical), 0.2, 1e-9);
 
-    const BakeResult thin = bake_of(3, 0.2, automatic);
+    const BakeResult thin = bake_of(3, 0.2, kAutomatic);
     EXPECT_TRUE(entry_of(thin, "multiple.model").on);
     EXPECT_EQ(entry_of(thin, "multiple.model").choice, "walks");
     EXPECT_LT(thin.accuracy->model, 0.05) << "one row for all views";
@@ -215,19 +211,16 @@ TEST(ModelChoice, ErrorAskedForIsThatOfTheModelAndTheNumbersTogether) {
 
 // An open body may be a sheet, so walks are expected; this one is thick.
 TEST(ModelChoice, LightScatteredOnceIsBackWhereTheDipoleWasMeasuredToServe) {
-    formats::Medium medium = tests::make_grey_medium(198, 2);
-    medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-    medium.phase.g = 0.5f;
-    tests::Primitive open = tests::make_sphere(2);
-    open.index.resize(open.index.size() / 12 * 9);  // a hole too large to know the thickness
-    const tests::Scene ball = tests::make_translucent_scene({open}, medium);
+    tests::Scene ball = make_ball(200, 0.99f, 0.5f);
+    auto& index = ball.primitives[0].index;
+    index.resize(index.size() / 12 * 9);  // a hole too large to know the thickness
     const auto bake_of = [&](double model) {
         BakeOptions options = tests::only({"multiple", "single"});
         options.error = 0.3;
         options.set(kMultipleModel, model);
         return tests::bake_scene(ball, options);
     };
-    const BakeResult chosen = bake_of(static_cast<double>(MultipleModel::automatic));
+    const BakeResult chosen = bake_of(kAutomatic);
     const auto first = plan_bake(all_effects(), ball, inspect_scene(ball), chosen.knobs);
     EXPECT_FALSE(find_entry(first, "single", 0)->on);
     EXPECT_TRUE(entry_of(chosen, "single").on);
@@ -237,8 +230,7 @@ TEST(ModelChoice, LightScatteredOnceIsBackWhereTheDipoleWasMeasuredToServe) {
 
 TEST(ModelChoice, RequestsThatWalksOverruleAreNamed) {
     // Sites too far apart for rows by view.
-    const tests::Scene dense =
-        tests::make_translucent_scene({tests::make_sphere(2)}, tests::make_grey_medium(297, 3));
+    const tests::Scene dense = make_ball(300, 0.99f);
     BakeOptions options = bake_by(kWalked, 20000);
     options.set(kViewTerms, 4);
     const auto warnings_of = [](const tests::Scene& scene, const BakeOptions& wanted) {
@@ -253,8 +245,7 @@ TEST(ModelChoice, RequestsThatWalksOverruleAreNamed) {
         return all;
     };
     EXPECT_THAT(warnings_of(dense, options), HasSubstr("--view-terms"));
-    const tests::Scene thin = tests::make_translucent_scene({tests::make_sphere(2)},
-                                                            tests::make_grey_medium(2.97f, 0.03f));
+    const tests::Scene thin = make_ball(3, 0.99f);
     EXPECT_THAT(warnings_of(thin, options), Not(HasSubstr("--view-terms")));
     options.effects = {"multiple", "single"};
     EXPECT_THAT(warnings_of(thin, options), Not(HasSubstr("--effects")))
@@ -264,11 +255,7 @@ TEST(ModelChoice, RequestsThatWalksOverruleAreNamed) {
 TEST(ModelChoice, RowsByViewAreTakenWhereTheBodyIsThinOrAbsorbsAndTheQualityAsks) {
     const auto entry = [](float sigma_t, const BakeOptions& options, float eta = 1.3f,
                           float albedo = 0.999f) {
-        return entry_of(tests::bake_scene(tests::make_translucent_scene(
-                                              {tests::make_sphere(2)},
-                                              tests::make_grey_medium(albedo * sigma_t,
-                                                                      (1 - albedo) * sigma_t, eta)),
-                                          options),
+        return entry_of(tests::bake_scene(make_ball(sigma_t, albedo, 0, eta), options),
                         "multiple.view");
     };
     BakeOptions options = bake_by(kWalked, 20000);
@@ -301,11 +288,6 @@ TEST(ModelChoice, NineRowsByViewAreTakenWhereTheyMakeTheDifferenceThatThePlanSay
         options.set(kWalksAround, around);
         options.effects = {"multiple", "single"};
         options.quality = Quality::production;
-        const auto planned = [&](const BakeOptions& wanted) {
-            return *find_entry(
-                plan_bake(all_effects(), block, inspect_scene(block), *resolve_knobs(wanted)),
-                "multiple.view", 0);
-        };
         // Of the middle of the upper face, by the cosine of the view.
         constexpr std::array<float, 5> kCosines{0.1f, 0.3f, 0.5f, 0.7f, 0.9f};
         const auto seen = [&](double views) {
@@ -338,7 +320,8 @@ TEST(ModelChoice, NineRowsByViewAreTakenWhereTheyMakeTheDifferenceThatThePlanSay
             truth += share * with_nine[i];
             all += share;
         }
-        return Said{planned(options).terms, planned(four).model_error,
+        return Said{planned_entry(block, options, "multiple.view").terms,
+                    planned_entry(block, four, "multiple.view").model_error,
                     std::sqrt(squares / all) / (truth / all)};
     };
     const Said dark = said(0.5f, 300), bright = said(0.9f, 100);
@@ -353,19 +336,13 @@ TEST(ModelChoice, NineRowsByViewAreTakenWhereTheyMakeTheDifferenceThatThePlanSay
 TEST(ModelChoice, MoreRowsByViewAreTakenWhereFlatBodiesAbsorbOrAreThin) {
     const auto rows = [](std::vector<tests::Primitive> body, float sigma_t, float albedo, float eta,
                          float g, Quality quality) {
-        formats::Medium medium =
-            tests::make_grey_medium(albedo * sigma_t, (1 - albedo) * sigma_t, eta);
-        medium.phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-        medium.phase.g = g;
-        const tests::Scene scene = tests::make_translucent_scene(std::move(body), medium);
+        tests::Scene scene = make_ball(sigma_t, albedo, g, eta);
+        scene.primitives = std::move(body);
         BakeOptions options = bake_by(kWalked, 20000);
         options.set(kSites, 100000);
         options.set(kWalksAround, 1);
         options.quality = quality;
-        return find_entry(
-                   plan_bake(all_effects(), scene, inspect_scene(scene), *resolve_knobs(options)),
-                   "multiple.view", 0)
-            ->terms;
+        return planned_entry(scene, options, "multiple.view").terms;
     };
     const std::vector<tests::Primitive> plate{tests::make_plate(0.05f)};
     const std::vector<tests::Primitive> ball{tests::make_sphere(2)};

@@ -45,18 +45,6 @@ TEST(Pipeline, OpenSurfacesUnderWhiteShineWithTheirAlbedo) {
     EXPECT_LT(previous, 1e-3);
 }
 
-TEST(Pipeline, AConvexBodyAloneUnderWhiteIsWithinATenthOfAPercent) {
-    const auto scene = tests::make_scene({tests::make_sphere(3, 0.05f)});
-    BakeOptions options;
-    options.quality = Quality::reference;
-    options.cubemap_size = 32;
-    const BakeResult result = tests::bake_scene(scene, options);
-    for (const formats::Rgb c : tests::relight(result.asset.view(), "white")) {
-        ASSERT_NEAR(c.r, 1, 1e-3);
-        ASSERT_EQ(c.r, c.g);
-    }
-}
-
 TEST(Pipeline, VertexOfAFloorLiesInTheShadowOfWhatStandsOnIt) {
     BakeOptions options = small_options();
     options.coefficients = kAllCoefficients;

@@ -38,63 +38,48 @@ formats::Medium forward_medium() {
     return medium;
 }
 
-TEST(Prediction, OpaqueSceneHasTheStagesThatWerePredicted) {
-    expect_stages_as_predicted(make_dented_ball(), small_bake());
-}
-
-TEST(Prediction, ConvexBodyAloneHasTheStagesThatWerePredicted) {
-    expect_stages_as_predicted(make_scene({make_sphere(4)}), small_bake());
-}
-
-TEST(Prediction, DenseBodyHasTheStagesThatWerePredicted) {
-    expect_stages_as_predicted(
-        make_translucent_scene({make_sphere(5)}, make_grey_medium(2e4f, 4e3f)), small_bake());
-}
-
-TEST(Prediction, MediumOnAFloorHasTheStagesThatWerePredicted) {
-    expect_stages_as_predicted(make_ball_on_floor(make_grey_medium(10, 1)), small_bake());
-}
-
-TEST(Prediction, ForwardScatteringMediumHasTheStagesThatWerePredicted) {
-    bake::BakeOptions options = small_bake();
-    options.set(bake::kPhaseTerms, 4);
-    expect_stages_as_predicted(make_ball_on_floor(forward_medium()), options);
-}
-
-TEST(Prediction, LeftOutEffectsLeaveTheirStagesOut) {
-    const Scene scene = make_ball_on_floor(make_grey_medium(10, 1, 1.0f));
-    for (const char* effect : {"multiple", "single", "direct"}) {
-        SCOPED_TRACE(effect);
-        expect_stages_as_predicted(scene, only({effect}));
+TEST(Prediction, EveryKindOfSceneHasTheStagesThatWerePredicted) {
+    const formats::Medium grey = make_grey_medium(10, 1);
+    const Scene dense = make_translucent_scene({make_sphere(5)}, make_grey_medium(2e4f, 4e3f));
+    const Scene matched = make_ball_on_floor(make_grey_medium(10, 1, 1.0f));
+    Scene textured = make_dented_ball();  // bounced light is filtered by textures
+    textured.images.push_back({2, 1, {0, 0, 0, 255, 255, 255, 255, 255}});
+    textured.materials[0].base_color_image = 0;
+    for (const glm::vec3& p : textured.primitives[1].position) {
+        textured.primitives[1].texcoord.emplace_back(9 * p.x, p.z);
     }
-}
-
-TEST(Prediction, TexturesThatBouncedLightIsFilteredByHaveAStage) {
-    Scene scene = make_dented_ball();
-    scene.images.push_back({2, 1, {0, 0, 0, 255, 255, 255, 255, 255}});
-    scene.materials[0].base_color_image = 0;
-    for (const glm::vec3& p : scene.primitives[1].position) {
-        scene.primitives[1].texcoord.emplace_back(9 * p.x, p.z);
+    Scene smoke, smoke_on_floor, shadow;
+    smoke.materials.resize(1);
+    smoke.volumes.push_back(make_volume(make_blob(0.5, 0.25), 2, 0.9f, 0));
+    smoke_on_floor = smoke;
+    smoke_on_floor.primitives.push_back(make_quad({-3, -1.02f, -3}, {0, 0, 6}, {6, 0, 0}, 4));
+    shadow = smoke_on_floor;
+    shadow.volumes[0].albedo = {0, 0, 0};  // nothing to check
+    bake::BakeOptions four_terms = small_bake(), pilot = small_bake();
+    four_terms.set(bake::kPhaseTerms, 4);
+    pilot.error = 0.5;  // the first choice will do
+    const struct {
+        const char* name;
+        Scene scene;
+        bake::BakeOptions options = small_bake();
+    } cases[] = {{"opaque", make_dented_ball()},
+                 {"convex", make_scene({make_sphere(4)})},
+                 {"dense", dense},
+                 {"medium on a floor", make_ball_on_floor(grey)},
+                 {"scatters forward", make_ball_on_floor(forward_medium()), four_terms},
+                 {"multiple alone", matched, only({"multiple"})},
+                 {"single alone", matched, only({"single"})},
+                 {"direct alone", matched, only({"direct"})},
+                 {"textures", textured, only({"direct", "interreflection"})},
+                 {"textures without bounces", textured, only({"direct"})},
+                 {"pilot", make_ball_on_floor(grey), pilot},
+                 {"volume", smoke},
+                 {"volume above a floor", smoke_on_floor},
+                 {"black volume above a floor", shadow}};
+    for (const auto& [name, scene, options] : cases) {
+        SCOPED_TRACE(name);
+        expect_stages_as_predicted(scene, options);
     }
-    expect_stages_as_predicted(scene, only({"direct", "interreflection"}));
-    expect_stages_as_predicted(scene, only({"direct"}));
-}
-
-TEST(Prediction, PilotHasTheStagesOfItsFirstRound) {
-    bake::BakeOptions options = small_bake();
-    options.error = 0.5;  // the first choice will do
-    expect_stages_as_predicted(make_ball_on_floor(make_grey_medium(10, 1)), options);
-}
-
-TEST(Prediction, VolumesAboveAFloorHaveTheStagesThatWerePredicted) {
-    Scene scene;
-    scene.materials.resize(1);
-    scene.volumes.push_back(make_volume(make_blob(0.5, 0.25), 2, 0.9f, 0));
-    expect_stages_as_predicted(scene, small_bake());
-    scene.primitives.push_back(make_quad({-3, -1.02f, -3}, {0, 0, 6}, {6, 0, 0}, 4));
-    expect_stages_as_predicted(scene, small_bake());
-    scene.volumes[0].albedo = {0, 0, 0};  // a shadow, and nothing to check
-    expect_stages_as_predicted(scene, small_bake());
 }
 
 TEST(Prediction, SecondsAndBytesOfVolumesBelongToTheirDecisions) {

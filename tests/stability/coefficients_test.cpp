@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -73,8 +74,8 @@ TEST(Coefficients, OneBandMayBeBlackOrClear) {
     Medium medium;
     medium.sigma_s = {10, 10, 0};
     medium.sigma_a = {0.1f, 0, 3};
-    expect_sound(bake_scene(make_ball_on_floor(medium), small_bake()), {0.3, 1}, "bands");
-    const BakeResult result = bake_scene(make_ball_on_floor(medium), only({"multiple", "single"}));
+    const BakeResult result =
+        bake_scene(make_ball_on_floor(medium), only({"multiple", "single", "specular"}));
     expect_sound(result, {0.3, 1}, "bands");
     for (const Rgb c : relight_primitive(result.asset, "white")) {
         EXPECT_GT(c.r, 0);
@@ -104,12 +105,12 @@ TEST(Coefficients, RadianceGrowsWithoutAJumpAsTheAlbedoTendsToOne) {
 }
 
 TEST(Profile, InItsCentreASampleGivesNoMoreThanTheTotal) {
-    for (const double spacing_in_z : {0.1, 1.0, 10.0, 1e4}) {
-        for (const auto kind : {Medium::Profile::classic, Medium::Profile::better,
-                                Medium::Profile::beams, Medium::Profile::normalized}) {
-            Medium medium = make_grey_medium(1000, 1);
-            medium.profile = kind;
-            const MediumProfile profile = make_medium_profile(medium, 0, {});
+    for (const auto kind : {Medium::Profile::classic, Medium::Profile::better,
+                            Medium::Profile::beams, Medium::Profile::normalized}) {
+        Medium medium = make_grey_medium(1000, 1);
+        medium.profile = kind;
+        const MediumProfile profile = make_medium_profile(medium, 0, {});  // takes a while
+        for (const double spacing_in_z : {0.1, 1.0, 10.0, 1e4}) {
             const double spacing = spacing_in_z * profile.smallest;
             const GatherProfile gather = make_gather_profile(profile, spacing, 1e3 * spacing);
             const double own = spacing * spacing * eval_far(gather, 0)[0] + gather.near_mass[0];
@@ -142,23 +143,6 @@ TEST(Profile, FarRangeOfTheBetterDipoleKeepsItsDigits) {
         const auto r2 = static_cast<float>(x * x);
         const double found = eval_far(gather, r2)[0] / profile.scale[0];
         EXPECT_NEAR(found / static_cast<double>(exact), 1, 1e-3) << r;
-    }
-}
-
-TEST(Scale, BodiesOfAnySizeLookAlikeIfTheirMediumScales) {
-    const auto scene =
-        tests::make_translucent_scene({tests::make_sphere(2)}, make_grey_medium(8, 0.2f));
-    const BakeResult metre = bake_scene(scene, small_bake());
-    for (const float scale : {1e-6f, 1e6f}) {
-        auto scaled = scene;
-        scaled.primitives[0] =
-            tests::transformed(scene.primitives[0], glm::mat3(1), scale, glm::vec3(0));
-        scaled.materials[0].medium = make_grey_medium(8 / scale, 0.2f / scale);
-        const BakeResult result = bake_scene(scaled, small_bake());
-        EXPECT_LT(relative_rms(relight_primitive(result.asset, "studio"),
-                               relight_primitive(metre.asset, "studio")),
-                  2e-3)
-            << scale;
     }
 }
 
@@ -195,15 +179,26 @@ TEST(Thin, MultipleScatteringOfABodyThinnerThanAMeanFreePathStaysBounded) {
 
 // Also where the mean free path is far below what coordinates of floats resolve.
 TEST(Thick, MeanFreePathsOfAMillionthOfTheBodyAndLessGiveTheLimit) {
-    for (const char* effect : {"single", "multiple"}) {
-        const auto at = [&](float sigma) {
-            const auto scene = tests::make_translucent_scene(
-                {tests::make_sphere(2)}, make_grey_medium(sigma, 0.01f * sigma));
-            return relight_primitive(bake_scene(scene, only({effect})).asset, "studio");
-        };
-        const std::vector<Rgb> limit = at(5e2f);
-        for (const float sigma : {1e5f, 1e8f, 1e12f}) {
-            EXPECT_LT(relative_rms(at(sigma), limit), 0.02) << effect << ' ' << sigma;
+    BakeOptions options = only({"single", "multiple"});
+    options.separate_terms = true;
+    using Shown = std::array<std::vector<Rgb>, 2>;
+    const auto at = [&](float sigma) {
+        const BakeResult baked =
+            bake_scene(tests::make_translucent_scene({tests::make_sphere(2)},
+                                                     make_grey_medium(sigma, 0.01f * sigma)),
+                       options);
+        runtime::ShadeOptions single, multiple;
+        single.terms = formats::TermSet::single;
+        multiple.terms = formats::TermSet::multiple;
+        return Shown{relight_primitive(baked.asset, "studio", 0, single),
+                     relight_primitive(baked.asset, "studio", 0, multiple)};
+    };
+    const Shown limit = at(5e2f);
+    for (const float sigma : {1e5f, 1e8f, 1e12f}) {
+        const Shown shown = at(sigma);
+        for (std::size_t effect = 0; effect < limit.size(); ++effect) {
+            EXPECT_GT(tests::mean_green(limit[effect]), 0.01);
+            EXPECT_LT(relative_rms(shown[effect], limit[effect]), 0.02) << effect << ' ' << sigma;
         }
     }
 }
@@ -213,11 +208,17 @@ TEST(Phase, ForwardAndBackwardPeaksBakeToSoundRows) {
         Medium medium = make_grey_medium(10, 0.1f);
         medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, g, 0, {}, {}};
         for (const std::uint32_t terms : {1u, 25u}) {
+            if (terms == 1 && std::abs(g) < 0.95f) continue;  // fewer terms ring less
             BakeOptions options = small_bake();
             options.set(kPhaseTerms, terms);
             // 25 terms of a sharper peak ring below zero, which pixels show as black.
             const double least = std::abs(g) < 0.95f || terms == 1 ? 0.05 : 0;
-            expect_sound(bake_scene(make_ball_on_floor(medium), options), {least, 1},
+            // The floor, which takes most of the time, is there with the sharpest peaks.
+            const bool is_hardest = terms == 25 && std::abs(g) > 0.95f;
+            const auto scene = is_hardest
+                                   ? make_ball_on_floor(medium)
+                                   : tests::make_translucent_scene({tests::make_sphere(2)}, medium);
+            expect_sound(bake_scene(scene, options), {least, 1},
                          "g = " + std::to_string(g) + ", " + std::to_string(terms) + " terms");
         }
     }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "bake/encode/select_coefficients.h"
 #include "formats/opal/cubemap.h"
@@ -16,13 +17,17 @@ using tests::make_grey_medium;
 using tests::relative_rms;
 using tests::small_bake;
 
-BakeResult bake_lit_ball(std::uint32_t coefficients) {
+// Baked once for all cases.
+const BakeResult& bake_lit_ball(std::uint32_t coefficients) {
+    static std::map<std::uint32_t, BakeResult> bakes;
+    const auto known = bakes.find(coefficients);
+    if (known != bakes.end()) return known->second;
     BakeOptions options = small_bake();
     options.cubemap_size = 16;
     options.coefficients = coefficients;
-    return bake_scene(
-        tests::make_translucent_scene({tests::make_sphere(2)}, make_grey_medium(10, 0.2f)),
-        options);
+    return bakes[coefficients] = bake_scene(
+               tests::make_translucent_scene({tests::make_sphere(2)}, make_grey_medium(10, 0.2f)),
+               options);
 }
 
 std::vector<Rgb> relight_by_map(const formats::Asset& asset, const std::vector<Rgb>& map) {
@@ -30,7 +35,7 @@ std::vector<Rgb> relight_by_map(const formats::Asset& asset, const std::vector<R
 }
 
 TEST(Light, ATexelAsBrightAsTheSunActsAsItDoesScaledDown) {
-    const BakeResult result = bake_lit_ball(128);
+    const BakeResult& result = bake_lit_ball(128);
     for (const std::size_t texel : {0u, 700u, 1535u}) {
         std::vector<Rgb> map(formats::cubemap_texels(16), Rgb{0, 0, 0});
         map[texel] = {1, 0.9f, 0.8f};
@@ -48,7 +53,7 @@ TEST(Light, ATexelAsBrightAsTheSunActsAsItDoesScaledDown) {
 
 // The grey of a map that is bright everywhere else must survive beside the texel.
 TEST(Light, AddingASunAddsItsOwnPictureAndNothingElse) {
-    const BakeResult result = bake_lit_ball(128);
+    const BakeResult& result = bake_lit_ball(128);
     std::vector<Rgb> sky(formats::cubemap_texels(16), Rgb{1, 1, 1});
     std::vector<Rgb> sun(sky.size(), Rgb{0, 0, 0});
     sun[300] = {1e5f, 1e5f, 1e5f};
@@ -103,7 +108,7 @@ TEST(Codes, ADominantCoefficientCostsNoMoreThanHalfAStepOfEach) {
 // Truncated rows ring below zero under a small light; what is shown is clamped, its mean over
 // directions of the light is not biased by the clamp of any single term.
 TEST(Truncation, RingingBelowZeroIsClampedAtTheEndOnly) {
-    const BakeResult few = bake_lit_ball(16), all = bake_lit_ball(kAllCoefficients);
+    const BakeResult &few = bake_lit_ball(16), &all = bake_lit_ball(kAllCoefficients);
     std::vector<double> sum_few(162), sum_all(162);
     bool clamped = false;
     for (std::size_t texel = 0; texel < formats::cubemap_texels(16); texel += 3) {
@@ -134,7 +139,7 @@ TEST(Truncation, RingingBelowZeroIsClampedAtTheEndOnly) {
 
 // Haar wavelets do not reach over the edge of a face: lights there must not cost more.
 TEST(Seams, LightsOnAnEdgeOfTheCubeErrHardlyMoreThanInTheMiddleOfAFace) {
-    const BakeResult some = bake_lit_ball(64), all = bake_lit_ball(kAllCoefficients);
+    const BakeResult &some = bake_lit_ball(64), &all = bake_lit_ball(kAllCoefficients);
     const auto error = [&](const char* light) {
         return relative_rms(tests::relight(some.asset.view(), light),
                             tests::relight(all.asset.view(), light));

@@ -27,47 +27,39 @@ struct ViewCommand {
     double rotate_light = 0;
 };
 
-formats::Result<std::vector<ScriptStep>> read_steps(const std::string& path) {
-    if (path.empty()) return std::vector<ScriptStep>();
-    const auto file = formats::FileBytes::open(path);
-    if (!file) return file.error();
-    const auto bytes = file->bytes();
-    return parse_script({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path);
+std::vector<ScriptStep> read_steps(const std::string& path) {
+    if (path.empty()) return {};
+    const auto file = require(formats::FileBytes::open(path));
+    const auto bytes = file.bytes();
+    return require(parse_script({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path));
 }
 
 // What the options say of the file; the window reads it again, on its own thread.
-formats::Status apply_to_file(const ViewCommand& options, ViewState& state) {
-    const auto asset = open_asset(state.file);
-    if (!asset) return asset.error();
-    const formats::AssetView& view = asset->loaded.view;
-    if (auto status = runtime::check_terms(view, state.terms, state.file); !status) return status;
-    const auto emitters = parse_emitters(view.emitters, options.emitters);
-    if (!emitters) return emitters.error();
+void apply_to_file(const ViewCommand& options, ViewState& state) {
+    const auto asset = require(open_asset(state.file));
+    const formats::AssetView& view = asset.loaded.view;
+    require(runtime::check_terms(view, state.terms, state.file));
+    const auto emitters = require(parse_emitters(view.emitters, options.emitters));
     for (std::uint32_t e = 0; e < view.emitters.size(); ++e) {
-        set_emitter(state, std::string(view.emitters.name(e)), (*emitters)[e]);
+        set_emitter(state, std::string(view.emitters.name(e)), emitters[e]);
     }
     const auto camera = make_camera(options.camera, view);
-    if (!camera) return camera.error();
-    state.width = camera->width;
-    state.height = camera->height;
-    state.fov = camera->fov_y;
+    state.width = camera.width;
+    state.height = camera.height;
+    state.fov = camera.fov_y;
     if (!frames_object(options.camera)) {
-        state.viewpoint = Viewpoint{camera->eye, camera->target, camera->up};
+        state.viewpoint = Viewpoint{camera.eye, camera.target, camera.up};
     }
-    return formats::ok_status();
 }
 
 int run(const ViewCommand& options) {
     const auto steps = read_steps(options.script);
-    if (!steps) return report_error(steps.error());
     ViewState state = options.begin;
-    if (auto status = check_light(state.light); !status) return report_error(status.error());
-    const auto terms = formats::parse_terms(options.terms, formats::TermSet::baked, "--terms");
-    if (!terms) return report_error(terms.error());
-    state.terms = *terms;
+    require(check_light(state.light));
+    state.terms = require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
     rotate_light_to(state, options.rotate_light);
-    if (auto status = apply_to_file(options, state); !status) return report_error(status.error());
-    return run_view(state, *steps, options.script);
+    apply_to_file(options, state);
+    return run_view(state, steps, options.script);
 }
 
 }  // namespace
@@ -77,7 +69,7 @@ void add_view_command(CLI::App& app, Job& job) {
     options->camera.size = "1280x800";
     ViewState& begin = options->begin;
     CLI::App* command = app.add_subcommand("view", "Show an .opal file in a window");
-    command->add_option("file", begin.file, "the .opal file")->required()->option_text("FILE.opal");
+    add_asset_argument(*command, begin.file);
     command->add_option("other", begin.other, "a second one, shown right of a split")
         ->option_text("OTHER.opal");
     command->add_option("--light", begin.light, light_help())->option_text("ENV [studio]");

@@ -283,12 +283,10 @@ int Session::run(const std::string& script_name) {
 
 int run_view(const ViewState& begin, const std::vector<ScriptStep>& steps,
              const std::string& script) {
-    auto window = ViewWindow::open(begin.width, begin.height);
-    if (!window) return report_error(window.error());
-    window->set_title("Opaline: " + begin.file);
-    auto painter = PicturePainter::create();
-    if (!painter) return report_error(painter.error());
-    return Session(std::move(*window), std::move(*painter), begin, steps).run(script);
+    auto window = require(ViewWindow::open(begin.width, begin.height));
+    window.set_title("Opaline: " + begin.file);
+    auto painter = require(PicturePainter::create());
+    return Session(std::move(window), std::move(painter), begin, steps).run(script);
 }
 
 }  // namespace opaline::cli

@@ -1,0 +1,125 @@
+#include "bake/cli/program.h"
+
+#include <fmt/core.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <system_error>
+
+#include "bake/cli/command.h"
+#include "bake/cli/messages.h"
+#include "bake/cli/usage_errors.h"
+#include "bake/transport/embree_scene.h"
+#include "formats/opal/asset.h"
+
+namespace opaline::cli {
+namespace {
+
+#ifdef OPALINE_HAS_GL
+constexpr bool kHasGl = true;
+#else
+constexpr bool kHasGl = false;
+#endif
+#ifdef __clang__
+constexpr const char* kCompiler = "clang " __clang_version__;
+#else
+constexpr const char* kCompiler = "g++ " __VERSION__;
+#endif
+
+std::string describe_version() {
+    return fmt::format(
+        "opaline {}\n.opal files   version {}\nray tracer    {}\nbuild         {}, {}\n"
+        "OpenGL        {}",
+        OPALINE_VERSION, formats::kOpalVersion, bake::EmbreeScene::description(),
+        OPALINE_BUILD_TYPE, kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
+}
+
+int run_commands(int argc, const char* const* argv) {
+    CLI::App app(
+        "Opaline bakes how light travels through a scene, so that it can be relit in real time.");
+    app.name("opaline");
+    app.require_subcommand(1);
+    app.set_version_flag("-v,--version", describe_version);
+    MessageOptions messages;
+    app.fallthrough();  // the program's options stand before or after the command
+    app.add_flag("--strict", messages.strict,
+                 "warnings are errors: nothing is written, exit code 3");
+    app.add_flag("--quiet", messages.quiet, "print errors only: no warnings, summary or progress");
+    app.get_formatter()->column_width(38);
+    Job job;
+    // In the order in which they are met.
+    add_example_command(app, job);
+    add_bake_command(app, job);
+    add_render_command(app, job);
+#ifdef OPALINE_HAS_GL
+    add_view_command(app, job);
+#endif
+    add_export_web_command(app, job);
+    add_help_command(app, job);
+    add_plan_command(app, job);
+    add_info_command(app, job);
+    add_verify_command(app, job);
+    add_relight_command(app, job);
+    add_reference_command(app, job);
+    add_compare_command(app, job);
+    add_mie_command(app, job);
+    add_phase_command(app, job);
+    add_slab_command(app, job);
+    add_sweep_command(app, job);
+    app.footer(
+        "Exit codes: 0 success; 1 the job ran and the answer is no; 2 bad usage; 3 bad input "
+        "file;\n"
+        "4 resource or I/O failure; 130 interrupted.\n"
+        "Example:\n"
+        "  opaline example statue\n"
+        "  opaline bake statue/statue.gltf -o statue.opal\n"
+        "  opaline render statue.opal -o statue.png\n"
+        "`opaline help COMMAND` explains a command.");
+    for (CLI::App* command : app.get_subcommands({})) {
+        command->footer(command->get_footer() +
+                        "\nEvery command also takes --strict and --quiet (see `opaline --help`).");
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);  // prints what --help or --version asked for
+    } catch (const CLI::ParseError& error) {
+        fmt::print(stderr, "opaline: error: {}\n", describe_usage_error(app, error));
+        return kExitUsage;
+    }
+    set_message_options(messages);
+    int code = kExitSuccess;
+    try {
+        code = job();
+    } catch (const Refusal& refusal) {
+        code = report_error(refusal.error);
+    }
+    // Buffered data may still not fit where it goes.
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+        fmt::print(stderr, "opaline: error: standard output: cannot write: {}\n",
+                   std::strerror(errno));
+        return kExitResource;
+    }
+    return code;
+}
+
+}  // namespace
+
+int run_program(int argc, const char* const* argv) {
+    try {
+        return run_commands(argc, argv);
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
+    } catch (const std::system_error& error) {
+        fmt::print(stderr, "opaline: error: {}\n", printable(error.what()));
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
+                   printable(error.what()));
+    }
+    return kExitResource;
+}
+
+}  // namespace opaline::cli
