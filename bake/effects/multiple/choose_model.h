@@ -35,8 +35,8 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
 /// The model of a body's multiple scattering.
 struct ModelChoice {
     MultipleModel model = MultipleModel::dipole;  ///< not automatic
-    ModelError dipole;                         ///< by measure_models, where it is asked for
-    ModelError views;      ///< of walks, where the number of rows is ours to choose
+    ModelError dipole;                            ///< by measure_models, where it is asked for
+    ModelError views;         ///< of walks, where the number of rows is ours to choose
     bool is_found = false;    ///< dipole_error comes from rays through the body (body_error)
     double dipole_error = 0;  ///< relative RMS, as a share of multiple scattering alone: estimated,
                               ///< found, or measured

@@ -52,7 +52,7 @@ struct PilotSquares {
 // `compare`: PilotSquares of a pilot, a point, and its number. Errors up to `noise` are 0.
 template <class Compare>
 ModelError measure(const EffectInputs& inputs, std::size_t receivers, double noise,
-                      std::uint64_t& traced, Compare&& compare) {
+                   std::uint64_t& traced, Compare&& compare) {
     constexpr std::uint32_t kRaysPerSun = 1;
     const std::vector<BodyPoint> points = draw_body_points(inputs, receivers);
     const std::vector<TestLight> lights = make_pilot_lights();
@@ -102,7 +102,7 @@ void compare_views(const ViewSet& set, const std::vector<TwoEstimates>& seen,
 }  // namespace
 
 ModelError measure_models(const EffectInputs& inputs, const MediumProfile& profile,
-                             std::uint64_t& traced) {
+                          std::uint64_t& traced) {
     constexpr std::size_t kReceivers = 64;
     constexpr std::uint32_t kFromEach = 512, kPoints = 256;
     const SurfaceIntegral integral =
@@ -128,7 +128,7 @@ ModelError measure_models(const EffectInputs& inputs, const MediumProfile& profi
 }
 
 ModelError measure_views(const EffectInputs& inputs, const MediumProfile& profile,
-                            std::uint64_t& traced) {
+                         std::uint64_t& traced) {
     constexpr std::size_t kReceivers = 16;
     constexpr std::uint32_t kFromEach = 32;
     constexpr double kNoise = 0.03;

@@ -17,12 +17,12 @@ struct ModelError {
 
 /// Of multiple scattering by the dipole against random walks. `traced` adds up.
 ModelError measure_models(const EffectInputs& inputs, const MediumProfile& profile,
-                             std::uint64_t& traced);
+                          std::uint64_t& traced);
 
 /// What one row for all views leaves of light of all orders: of walks from 16 vertices along the
 /// views from which rows follow (ViewSet). A quarter of the weight is on the normal, as in the
 /// self-check. Errors below 3 % drown in noise and are 0. `traced` adds up.
 ModelError measure_views(const EffectInputs& inputs, const MediumProfile& profile,
-                            std::uint64_t& traced);
+                         std::uint64_t& traced);
 
 }  // namespace opaline::bake

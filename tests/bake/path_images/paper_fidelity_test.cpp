@@ -128,14 +128,8 @@ TEST(PaperFidelity, SkyEntersWherePathsLeaveTheVolume) {
 
 TEST(PaperFidelity, SurfacesHideTheSkyFromPathsThatLeave) {
     const auto look = [](float y) {
-        Primitive square;
-        square.position = {{-9, y, -9}, {9, y, -9}, {9, y, 9}, {-9, y, 9}};
-        square.normal.assign(4, {0, 1, 0});
-        square.index = {0, 2, 1, 0, 3, 2};
-        Scene scene = make_scene({square});
-        scene.materials[0].double_sided = true;
         return look_along(*make_volume_scene(printed(make_ball_of(1, 1, 0)), make_white_sky(),
-                                             std::move(scene)),
+                                             make_square(y, 9)),
                           {0, 0, -3}, {0, 0, 1}, plain(TermSet::volume_multiple))
             .x;
     };

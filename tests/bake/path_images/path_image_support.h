@@ -22,6 +22,17 @@ inline std::unique_ptr<ReferenceFixture> make_volume_scene(formats::Volume volum
     return make_fixture(std::move(scene), std::move(light));
 }
 
+/// A square of side 2 `half` at height y, seen from both sides.
+inline Scene make_square(float y, float half = 2) {
+    Primitive square;
+    square.position = {{-half, y, -half}, {half, y, -half}, {half, y, half}, {-half, y, half}};
+    square.normal.assign(4, {0, 1, 0});
+    square.index = {0, 2, 1, 0, 3, 2};
+    Scene scene = make_scene({square});
+    scene.materials[0].double_sided = true;
+    return scene;
+}
+
 inline runtime::Camera camera_along(glm::vec3 from, glm::vec3 direction, std::uint32_t size = 1) {
     const glm::vec3 to = from + direction;
     runtime::Camera camera;

@@ -141,17 +141,6 @@ TEST(PathImage, HasTheSameBitsForAnyNumberOfThreads) {
     }
 }
 
-// A square of 4 m at height y, seen from both sides.
-Scene make_square(float y) {
-    Primitive square;
-    square.position = {{-2, y, -2}, {2, y, -2}, {2, y, 2}, {-2, y, 2}};
-    square.normal.assign(4, {0, 1, 0});
-    square.index = {0, 2, 1, 0, 3, 2};
-    Scene scene = make_scene({square});
-    scene.materials[0].double_sided = true;
-    return scene;
-}
-
 TEST(PathImage, FloorBehindAVolumeIsLitAndSeenThroughIt) {
     const auto scene = make_volume_scene(make_ball_volume(1, 0.5f, 0),
                                          make_distant_light({0, 1, 0}), make_square(-2));
