@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "formats/spectrum.h"
-
 namespace opaline::bake {
 namespace {
 
@@ -89,10 +87,6 @@ Xyz sun_irradiance(double turbidity, double sun_zenith) {
     constexpr double kOutsideKlx = 128;
     return {kOutsideKlx * sum[0] / outside, kOutsideKlx * sum[1] / outside,
             kOutsideKlx * sum[2] / outside};
-}
-
-std::array<double, 3> rec709_from_xyz(const Xyz& c) {
-    return formats::rec709_of_xyz(c);
 }
 
 }  // namespace opaline::bake

@@ -2,10 +2,11 @@
 
 #include <array>
 
+#include "formats/spectrum.h"
+
 namespace opaline::bake {
 
-/// CIE 1931 tristimulus values; y is the photometric quantity.
-using Xyz = std::array<double, 3>;
+using formats::Xyz;
 
 /// Clear sky of [Preetham1999]: per quantity (Y, x, y) Perez's distribution
 ///   F(theta, gamma) = (1 + A e^(B / cos theta)) (1 + C e^(D gamma) + E cos^2 gamma)
@@ -30,8 +31,5 @@ Xyz eval_perez_sky(const PerezSky& sky, double cos_theta, double gamma);
 /// out, because they absorb beyond 680 nm, where the colour matching functions almost vanish. The
 /// colour matching functions are the analytic fit of [Wyman2013].
 Xyz sun_irradiance(double turbidity, double sun_zenith);
-
-/// XYZ to linear Rec. 709 (D65); colours outside the gamut have negative components.
-std::array<double, 3> rec709_from_xyz(const Xyz& xyz);
 
 }  // namespace opaline::bake

@@ -20,7 +20,7 @@ constexpr double kSunAngularRadius = 0.265 * std::numbers::pi / 180;
 using Color = std::array<double, 3>;
 
 Color in_gamut(const Xyz& xyz) {
-    Color color = rec709_from_xyz(xyz);
+    Color color = formats::rec709_of_xyz(xyz);
     for (double& band : color) {
         band = std::max(band, 0.0);
     }

@@ -51,31 +51,17 @@ std::uint8_t code(double x) {
     return static_cast<std::uint8_t>(std::lround(128 + 127 * std::clamp(x, -1.0, 1.0)));
 }
 
-// Triangles of a grid of (columns + 1) x (rows + 1) vertices, rows one after another.
-void add_grid(unsigned columns, unsigned rows, TriangleMesh& mesh) {
-    for (unsigned j = 0; j < rows; ++j) {
-        for (unsigned i = 0; i < columns; ++i) {
-            const std::uint32_t v = j * (columns + 1) + i, above = v + columns + 1;
-            mesh.triangles.push_back({v, v + 1, above + 1});
-            mesh.triangles.push_back({v, above + 1, above});
-        }
-    }
-}
-
 }  // namespace
 
 MappedMesh make_panel(glm::dvec3 corner, glm::dvec3 a, glm::dvec3 b, unsigned cells, double tile) {
     MappedMesh panel;
-    const glm::dvec3 normal = glm::normalize(glm::cross(a, b));
+    append_grid(panel.mesh, cells, cells, corner, a, b);
     for (unsigned j = 0; j <= cells; ++j) {
         for (unsigned i = 0; i <= cells; ++i) {
             const double s = static_cast<double>(i) / cells, t = static_cast<double>(j) / cells;
-            panel.mesh.position.push_back(corner + s * a + t * b);
-            panel.mesh.normal.push_back(normal);
             panel.texcoord.emplace_back(s * glm::length(a) / tile, -t * glm::length(b) / tile);
         }
     }
-    add_grid(cells, cells, panel.mesh);
     return panel;
 }
 
@@ -94,7 +80,7 @@ MappedMesh make_mapped_ball(glm::dvec3 centre, double radius) {
             ball.texcoord.emplace_back(4 * turn, -2 * up);
         }
     }
-    add_grid(kAround, kDown, ball.mesh);
+    join_grid(ball.mesh, kAround, kDown);
     std::erase_if(ball.mesh.triangles, [&](const Triangle& t) {  // at the poles
         const auto& at = ball.mesh.position;
         return glm::length(glm::cross(at[t[1]] - at[t[0]], at[t[2]] - at[t[0]])) <

@@ -54,26 +54,6 @@ TriangleMesh moved(TriangleMesh mesh, double x, double z) {
     return mesh;
 }
 
-void append_grid(TriangleMesh& mesh, unsigned columns, unsigned rows, const glm::dvec3& corner,
-                 const glm::dvec3& along, const glm::dvec3& up) {
-    const auto first = static_cast<std::uint32_t>(mesh.position.size());
-    const glm::dvec3 normal = glm::normalize(glm::cross(along, up));
-    for (unsigned j = 0; j <= rows; ++j) {
-        for (unsigned i = 0; i <= columns; ++i) {
-            mesh.position.push_back(corner + along * (static_cast<double>(i) / columns) +
-                                    up * (static_cast<double>(j) / rows));
-            mesh.normal.push_back(normal);
-        }
-    }
-    for (std::uint32_t j = 0; j < rows; ++j) {
-        for (std::uint32_t i = 0; i < columns; ++i) {
-            const std::uint32_t v = first + j * (columns + 1) + i;
-            mesh.triangles.push_back({v, v + 1, v + columns + 2});
-            mesh.triangles.push_back({v, v + columns + 2, v + columns + 1});
-        }
-    }
-}
-
 // Growth rings of one board of wood, seen along it: darker where 1, lighter where -1.
 double grain(double along, double across, double phase) {
     const double bend =

@@ -19,20 +19,32 @@ glm::dvec3 area_vector(const Triangle& t) {
     return glm::cross(glm::dvec3(t[1]) - a, glm::dvec3(t[2]) - a);
 }
 
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
+
+    void add(glm::vec3 x) {
+        low = glm::min(low, x);
+        high = glm::max(high, x);
+    }
+    glm::length_t widest() const {
+        const glm::vec3 size = high - low;
+        return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    }
+};
+
 Node enclose(const std::vector<Triangle>& triangles, std::uint32_t first, std::uint32_t count) {
     Node node;
     node.first = first;
     node.count = count;
-    glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
+    Box box;
     glm::dvec3 axis(0);
     for (std::uint32_t i = first; i < first + count; ++i) {
         axis += area_vector(triangles[i]);
         for (const glm::vec3 x : triangles[i]) {
-            low = glm::min(low, x);
-            high = glm::max(high, x);
+            box.add(x);
         }
     }
-    node.centre = 0.5 * (glm::dvec3(low) + glm::dvec3(high));
+    node.centre = 0.5 * (glm::dvec3(box.low) + glm::dvec3(box.high));
     const double length = glm::length(axis);
     node.axis = length > 0 ? axis / length : glm::dvec3(0, 0, 1);
     node.low = std::numeric_limits<double>::infinity();
@@ -50,19 +62,6 @@ Node enclose(const std::vector<Triangle>& triangles, std::uint32_t first, std::u
     node.radius = std::sqrt(squared);
     return node;
 }
-
-struct Box {
-    glm::vec3 low{std::numeric_limits<float>::max()}, high{std::numeric_limits<float>::lowest()};
-
-    void add(glm::vec3 x) {
-        low = glm::min(low, x);
-        high = glm::max(high, x);
-    }
-    glm::length_t widest() const {
-        const glm::vec3 size = high - low;
-        return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    }
-};
 
 glm::vec3 unit_normal(const Triangle& t) {
     return glm::vec3(glm::normalize(area_vector(t)));
@@ -155,6 +154,18 @@ HorizonTree make_horizon_tree(std::vector<Triangle> triangles) {
     return tree;
 }
 
+HorizonTree make_horizon_tree(const formats::Scene& scene, std::optional<std::uint32_t> material) {
+    std::vector<Triangle> triangles;
+    for (const formats::Primitive& p : scene.primitives) {
+        if (p.material != material.value_or(p.material)) continue;
+        for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
+            triangles.push_back(
+                {p.position[p.index[i]], p.position[p.index[i + 1]], p.position[p.index[i + 2]]});
+        }
+    }
+    return make_horizon_tree(std::move(triangles));
+}
+
 double farthest_along(const HorizonTree& tree, glm::dvec3 direction) {
     double farthest = -std::numeric_limits<double>::infinity();
     for (const Triangle& t : tree.triangle) {
@@ -167,30 +178,16 @@ double farthest_along(const HorizonTree& tree, glm::dvec3 direction) {
 
 void look_over_horizon(const HorizonTree& tree, glm::vec3 point, glm::dvec3 normal,
                        HorizonSearch& search) {
-    if (tree.node.empty()) {
-        return;
-    }
-    // At most two splits by facing along each axis, then halving: a depth of at most 6 + 32.
-    std::array<std::uint32_t, 64> open;
-    std::size_t count = 0;
-    open[count++] = 0;
-    while (count > 0 && !search.is_over()) {
-        const std::uint32_t at = open[--count];
-        const Node& node = tree.node[at];
-        --search.nodes_left;
-        if (is_lower(node, glm::dvec3(point), normal, search)) {
-            continue;
-        }
-        if (node.right != 0) {
-            open[count++] = node.right;
-            open[count++] = at + 1;
-            continue;
-        }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            search.sine =
-                std::max(search.sine, sine_of(tree.triangle[i], point, normal, search.flat));
-        }
-    }
+    walk_tree(
+        tree,
+        [&](const Node& node) {
+            if (search.is_over()) return false;
+            --search.nodes_left;
+            return !is_lower(node, glm::dvec3(point), normal, search);
+        },
+        [&](const Triangle& t) {
+            search.sine = std::max(search.sine, sine_of(t, point, normal, search.flat));
+        });
 }
 
 }  // namespace opaline::bake

@@ -1,9 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
+
+#include "formats/scene.h"
 
 namespace opaline::bake {
 
@@ -25,6 +29,32 @@ struct HorizonTree {
 
 /// Triangles without area are left out: no ray can hit them.
 HorizonTree make_horizon_tree(std::vector<HorizonTree::Triangle> triangles);
+
+/// All triangles of primitives of one material, or of the scene.
+HorizonTree make_horizon_tree(const formats::Scene& scene,
+                              std::optional<std::uint32_t> material = {});
+
+/// Visits the triangles of all nodes for which `enters(node)`.
+template <class Enters, class Visit>
+void walk_tree(const HorizonTree& tree, const Enters& enters, const Visit& visit) {
+    // At most two splits by facing along each axis, then halving: a depth of at most 6 + 32.
+    std::array<std::uint32_t, 64> open;
+    std::size_t count = 0;
+    if (!tree.node.empty()) open[count++] = 0;
+    while (count > 0) {
+        const std::uint32_t at = open[--count];
+        const HorizonTree::Node& node = tree.node[at];
+        if (!enters(node)) continue;
+        if (node.right != 0) {
+            open[count++] = node.right;
+            open[count++] = at + 1;
+            continue;
+        }
+        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
+            visit(tree.triangle[i]);
+        }
+    }
+}
 
 /// Largest coordinate along `direction` of any point of the triangles [m].
 double farthest_along(const HorizonTree& tree, glm::dvec3 direction);

@@ -119,17 +119,6 @@ void inspect_primitive(const Primitive& primitive, glm::dvec3 origin, MaterialFa
     }
 }
 
-HorizonTree make_tree(const Scene& scene) {
-    Triangles triangles;
-    for (const Primitive& p : scene.primitives) {
-        for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
-            triangles.push_back(
-                {p.position[p.index[i]], p.position[p.index[i + 1]], p.position[p.index[i + 2]]});
-        }
-    }
-    return make_horizon_tree(std::move(triangles));
-}
-
 double find_elevation(const Scene& scene, const HorizonTree& tree, std::uint32_t material,
                       Searches& searches) {
     HorizonSearch search = searches.start();
@@ -204,7 +193,7 @@ void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts
     const bool may_be_open = std::none_of(body.shell.begin(), body.shell.end(), folds_inward);
     if (may_be_open) {  // in a non-convex part some receiver sees another point of it
         if (tree.node.empty()) {
-            tree = make_tree(scene);
+            tree = make_horizon_tree(scene);
         }
         own.horizon.elevation = find_elevation(scene, tree, material, searches);
     }

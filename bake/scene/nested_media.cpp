@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "bake/scene/body_shells.h"
@@ -17,32 +16,6 @@ namespace {
 
 using Triangle = HorizonTree::Triangle;
 using Node = HorizonTree::Node;
-
-// Visits the triangles of all nodes for which `enters(node)`.
-template <class Enters, class Visit>
-void walk_tree(const HorizonTree& tree, const Enters& enters, const Visit& visit) {
-    if (tree.node.empty()) {
-        return;
-    }
-    std::array<std::uint32_t, 64> open;  // as deep as look_over_horizon's
-    std::size_t count = 0;
-    open[count++] = 0;
-    while (count > 0) {
-        const std::uint32_t at = open[--count];
-        const Node& node = tree.node[at];
-        if (!enters(node)) {
-            continue;
-        }
-        if (node.right != 0) {
-            open[count++] = node.right;
-            open[count++] = at + 1;
-            continue;
-        }
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-            visit(tree.triangle[i]);
-        }
-    }
-}
 
 // Distance [m] of the nearest triangle, if it is below `most`; else `most`.
 double distance_within(const HorizonTree& tree, glm::dvec3 point, double most) {
@@ -149,16 +122,7 @@ struct Surface {
 };
 
 Surface make_surface(const formats::Scene& scene, std::uint32_t material) {
-    Surface surface;
-    surface.body = make_body_shells(scene, material);
-    std::vector<Triangle> triangles;
-    for (const formats::Primitive& p : scene.primitives) {
-        for (std::size_t i = 0; p.material == material && i + 2 < p.index.size(); i += 3) {
-            triangles.push_back(
-                {p.position[p.index[i]], p.position[p.index[i + 1]], p.position[p.index[i + 2]]});
-        }
-    }
-    surface.tree = make_horizon_tree(std::move(triangles));
+    Surface surface{make_body_shells(scene, material), make_horizon_tree(scene, material), {}};
     surface.is_buried.resize(surface.body.shell.size());
     return surface;
 }

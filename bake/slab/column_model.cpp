@@ -29,17 +29,17 @@ double once_turned(double y) {
 
 // L = b / (1 - b) metres with the printed b = 0.9961.
 constexpr double kPrintedLength = 0.9961 / (1 - 0.9961);
-constexpr ColumnModelAt kPaper2006[] = {
-    {0, {kPrintedLength, 1.1796, 0.0138, 0.0265, 0.8389, 0.0547}},
-    {10, {kPrintedLength, 1.1293, 0.0154, 0.0262, 0.8412, 0.0547}},
-    {20, {kPrintedLength, 1.1382, 0.0131, 0.0272, 0.8334, 0.0552}},
-    {30, {kPrintedLength, 1.0953, 0.0049, 0.0294, 0.8208, 0.0564}},
-    {40, {kPrintedLength, 0.9808, 0.0012, 0.0326, 0.8010, 0.0603}},
-    {50, {kPrintedLength, 0.9077, 0.0047, 0.0379, 0.7774, 0.0705}},
-    {60, {kPrintedLength, 0.7987, 0.0207, 0.0471, 0.7506, 0.0984}},
-    {70, {kPrintedLength, 0.6629, 0.0133, 0.0616, 0.7165, 0.1700}},
-    {80, {kPrintedLength, 0.5043, 0.0280, 0.0700, 0.7149, 0.3554}},
-    {90, {kPrintedLength, 0.3021, 0.0783, 0.0700, 0.1000, 0.9500}}};
+// Light at 0, 10, ... 90 degrees.
+constexpr ColumnModel kPaper2006[] = {{kPrintedLength, 1.1796, 0.0138, 0.0265, 0.8389, 0.0547},
+                                      {kPrintedLength, 1.1293, 0.0154, 0.0262, 0.8412, 0.0547},
+                                      {kPrintedLength, 1.1382, 0.0131, 0.0272, 0.8334, 0.0552},
+                                      {kPrintedLength, 1.0953, 0.0049, 0.0294, 0.8208, 0.0564},
+                                      {kPrintedLength, 0.9808, 0.0012, 0.0326, 0.8010, 0.0603},
+                                      {kPrintedLength, 0.9077, 0.0047, 0.0379, 0.7774, 0.0705},
+                                      {kPrintedLength, 0.7987, 0.0207, 0.0471, 0.7506, 0.0984},
+                                      {kPrintedLength, 0.6629, 0.0133, 0.0616, 0.7165, 0.1700},
+                                      {kPrintedLength, 0.5043, 0.0280, 0.0700, 0.7149, 0.3554},
+                                      {kPrintedLength, 0.3021, 0.0783, 0.0700, 0.1000, 0.9500}};
 
 }  // namespace
 
@@ -67,16 +67,12 @@ OrderShares eval_column_model(const ColumnModel& model, double thickness, double
                            column_transmittance(model, thickness));
 }
 
-std::span<const ColumnModelAt> paper2006() {
-    return kPaper2006;
-}
-
 ColumnModel paper2006_at(double degrees) {
     constexpr double kStep = 10;
     const double at = std::clamp(degrees / kStep, 0.0, std::size(kPaper2006) - 1.0);
     const auto row = std::min(static_cast<std::size_t>(at), std::size(kPaper2006) - 2);
     const double share = at - static_cast<double>(row);
-    const ColumnModel &a = kPaper2006[row].model, &b = kPaper2006[row + 1].model;
+    const ColumnModel &a = kPaper2006[row], &b = kPaper2006[row + 1];
     return {std::lerp(a.length, b.length, share),   std::lerp(a.beta, b.beta, share),
             std::lerp(a.decay, b.decay, share),     std::lerp(a.extinction, b.extinction, share),
             std::lerp(a.forward, b.forward, share), std::lerp(a.back, b.back, share)};

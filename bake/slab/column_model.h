@@ -1,7 +1,6 @@
 #pragma once
 
 #include <numbers>
-#include <span>
 
 #include "bake/slab/order_shares.h"
 
@@ -31,18 +30,10 @@ OrderShares column_orders(const ColumnModel& model, double thickness);
 /// column.
 OrderShares eval_column_model(const ColumnModel& model, double thickness, double straight);
 
-/// The same with the light at an angle.
-struct ColumnModelAt {
-    double degrees;  ///< between light and normal
-    ColumnModel model;
-};
-
 /// Appendix B of [Bouthors2006] as printed, for droplets of effective radius 7 um, 3e8 per m^3, in
 /// metres: light at 0, 10, ... 90 degrees. Off by 0.01 of the light at most angles, by 0.1 at 80
-/// degrees; round values at 80 and 90 degrees.
-std::span<const ColumnModelAt> paper2006();
-
-/// The same between these angles, parameters linear in the angle [degrees], in [0, 90].
+/// degrees; round values at 80 and 90 degrees. Parameters are linear in the angle [degrees]
+/// between.
 ColumnModel paper2006_at(double degrees);
 
 /// kappa [1/m] of the droplets that paper2006 is for, by the paper's N0 pi r_e^2.

@@ -75,22 +75,4 @@ double spread_profile(double a, double view) {
     return -std::expm1(-a / mu) / taken;
 }
 
-double mean_straight_transmittance(double depth) {
-    constexpr double kOpaque = 700;  // below e^-700
-    if (depth <= 0 || depth > kOpaque) {
-        return depth <= 0 ? 1 : 0;
-    }
-    // 2 E_3 = (1 - x) e^-x + x^2 E_1(x), which cancels to 2 e^-x / x: a fraction does not.
-    constexpr double kFractionFrom = 2;
-    if (depth < kFractionFrom) {
-        return (1 - depth) * std::exp(-depth) - depth * depth * std::expint(-depth);
-    }
-    // E_3(x) = e^-x / (x + 3 / (1 + 1 / (x + 4 / (1 + 2 / (x + ...))))), from its end
-    double tail = depth;
-    for (int k = 60; k >= 1; --k) {
-        tail = depth + (k + 2) / (1 + k / tail);
-    }
-    return 2 * std::exp(-depth) / tail;
-}
-
 }  // namespace opaline::bake

@@ -25,7 +25,4 @@ double transmitted_twice(double depth, double light, double view);
 /// thin layers. a >= 0; `view` as above.
 double spread_profile(double a, double view);
 
-/// 2 E_3(depth): share of even light over the hemisphere that crosses unscattered; depth >= 0.
-double mean_straight_transmittance(double depth);
-
 }  // namespace opaline::bake

@@ -13,8 +13,6 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kGlowNodesAtOnce = 16;
-
 // A power of two, so that the scale rounds nothing, that brings the largest value to 2^14.
 float scale_for(float largest) {
     return largest > 0 ? std::ldexp(1.0f, std::max(std::ilogb(largest) - 14, -126)) : 0;
@@ -63,7 +61,8 @@ void append_values(std::span<const glm::vec3> values, std::uint32_t terms,
 }
 
 // E_k of a layout's nodes: grid after grid, node after node.
-std::vector<std::vector<glm::vec3>> scatter_glow(const GlowJob& job, const VolumeLayout& layout,
+std::vector<std::vector<glm::vec3>> scatter_glow(const VolumeJob& job, const PlacedNodes& nodes,
+                                                 const VolumeLayout& layout,
                                                  std::span<const GlowingGrid> grids,
                                                  const Context& context, std::uint64_t& rays) {
     std::vector<std::vector<glm::vec3>> all(grids.size());
@@ -71,29 +70,28 @@ std::vector<std::vector<glm::vec3>> scatter_glow(const GlowJob& job, const Volum
     if (terms == 0) {
         return all;
     }
-    const NodeLattice& lattice = job.lattices[layout.volume];
-    const GlowWalkSpace space{job.space, grids, job.rays, job.seed};
+    const std::size_t count = nodes.lattices[layout.volume].node.size();
+    const GlowWalkSpace space{nodes.space, grids, job.rays, job.knobs.seed};
     struct Block {
         std::vector<glm::vec3> values;  // node after node
         std::uint64_t rays = 0;
     };
     const std::size_t of_node = grids.size() * terms;
     for_each_block_in_order(
-        lattice.node.size(), kGlowNodesAtOnce, context,
+        count, kNodesAtOnce, context,
         [&](Range range) {
             Block block;
             block.values.resize((range.end - range.begin) * of_node);
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const auto values =
                     std::span(block.values).subspan((i - range.begin) * of_node, of_node);
-                const glm::vec3 position(job.scene.volumes[layout.volume].density.to_scene *
-                                         glm::dvec4(glm::dvec3(lattice.node[i]), 1.0));
-                block.rays += gather_glow(space,
-                                          {layout.volume, job.first[layout.volume] + i, position,
-                                           layout.glow_walks, terms},
-                                          values);
+                block.rays += gather_glow(
+                    space,
+                    {layout.volume, nodes.first[layout.volume] + i,
+                     position_of(job, nodes, layout.volume, i), layout.glow_walks, terms},
+                    values);
                 for (glm::vec3& value : values) {
-                    value *= job.albedo[layout.volume][i];
+                    value *= nodes.albedo[layout.volume][i];
                 }
             }
             return block;
@@ -109,7 +107,7 @@ std::vector<std::vector<glm::vec3>> scatter_glow(const GlowJob& job, const Volum
             }
             rays += block.rays;
             if (context.on_progress) {
-                context.on_progress({"light of volumes", range.end, lattice.node.size()});
+                context.on_progress({"light of volumes", range.end, count});
             }
         });
     return all;
@@ -117,7 +115,8 @@ std::vector<std::vector<glm::vec3>> scatter_glow(const GlowJob& job, const Volum
 
 }  // namespace
 
-formats::Glow bake_glow(const GlowJob& job, const Context& context, std::uint64_t& rays) {
+formats::Glow bake_glow(const VolumeJob& job, const PlacedNodes& nodes, const Context& context,
+                        std::uint64_t& rays) {
     formats::Glow glow;
     std::vector<std::uint32_t> glowing;
     for (const VolumeLayout& layout : job.layouts) {
@@ -128,14 +127,14 @@ formats::Glow bake_glow(const GlowJob& job, const Context& context, std::uint64_
     const std::vector<GlowingGrid> grids = make_glowing_grids(job.scene, glowing);
     for (std::size_t i = 0; i < job.layouts.size() && !grids.empty(); ++i) {
         const VolumeLayout& layout = job.layouts[i];
-        const auto scattered = scatter_glow(job, layout, grids, context, rays);
+        const auto scattered = scatter_glow(job, nodes, layout, grids, context, rays);
         for (std::size_t grid = 0; grid < grids.size(); ++grid) {
             formats::GlowRecord record;
             record.volume = static_cast<std::uint32_t>(i);
             record.emitter = static_cast<std::uint32_t>(grid);
             record.first_brick = static_cast<std::uint32_t>(glow.brick.size());
             if (grids[grid].volume == layout.volume) {
-                append_bricks(*grids[grid].grid, job.lattices[layout.volume], record, glow);
+                append_bricks(*grids[grid].grid, nodes.lattices[layout.volume], record, glow);
             }
             append_values(scattered[grid], layout.glow_terms, record, glow);
             if (record.terms > 0 || record.brick_count > 0) {

@@ -260,11 +260,8 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
     volumes.rows = std::move(*rows);
     if (std::ranges::any_of(job.layouts, &VolumeLayout::glows)) {
         volumes.glow =
-            run_stage(log, "light of volumes", "emitters: rows", [&](std::uint64_t& rays) {
-                return bake_glow({job.scene, job.rays, nodes.space, job.layouts, nodes.lattices,
-                                  nodes.first, nodes.albedo, job.knobs.seed},
-                                 context, rays);
-            });
+            run_stage(log, "light of volumes", "emitters: rows",
+                      [&](std::uint64_t& rays) { return bake_glow(job, nodes, context, rays); });
         if (context.cancelled()) {
             return formats::Volumes{};
         }

@@ -3,48 +3,12 @@
 #include <limits>
 #include <utility>
 
+#include "bake/volumes/grid_loops.h"
+
 namespace opaline::bake {
 namespace {
 
 using Grid = formats::SparseGrid<float>;
-
-// Of the density between some voxels: the least and the largest of them.
-struct Bounds {
-    float least = std::numeric_limits<float>::infinity(), most = 0;
-
-    void include(float value) {
-        least = std::min(least, value);
-        most = std::max(most, value);
-    }
-};
-
-// The voxels of a brick whose coordinates are at most `last` along each axis.
-void include_up_to(const Grid& grid, glm::ivec3 brick, glm::ivec3 last, Bounds& bounds) {
-    const std::uint32_t number = grid.brick_at(brick);
-    if (number == Grid::kEmpty) {
-        bounds.include(0);
-        return;
-    }
-    const std::span<const float> value = grid.brick(number);
-    for (int z = 0; z <= last.z; ++z) {
-        for (int y = 0; y <= last.y; ++y) {
-            for (int x = 0; x <= last.x; ++x) {
-                bounds.include(value[Grid::offset_in_brick({x, y, z})]);
-            }
-        }
-    }
-}
-
-// Of the density between voxels 8 b and 8 b + 8.
-Bounds bounds_of_cell(const Grid& grid, glm::ivec3 cell) {
-    Bounds bounds;
-    for (int c = 0; c < 8; ++c) {
-        const glm::ivec3 above(c & 1, c >> 1 & 1, c >> 2);
-        const glm::ivec3 last = glm::ivec3(Grid::kSide - 1) * (1 - above);
-        include_up_to(grid, cell + above, last, bounds);
-    }
-    return bounds;
-}
 
 float densest_followed(const Grid& grid, const std::array<float, 3>& sigma_t) {
     const float most = std::max({sigma_t[0], sigma_t[1], sigma_t[2]});
@@ -66,22 +30,17 @@ DensityVolume make_volume(const formats::Volume& volume) {
     if (!volume.scattering.empty()) {
         own.scattering = own.scaled ? &own.scaled->scattering : &volume.scattering;
     }
-    const glm::dmat4 to_index = glm::inverse(volume.density.to_scene);
-    own.to_index = glm::mat3(to_index);
-    own.offset = glm::vec3(to_index[3]);
-    own.first_cell = volume.density.first_brick - 1;
-    own.extent = volume.density.extent + 1;
+    place_cells(volume.density, volume.density.to_scene, own);
     own.densest = densest_followed(*own.grid, own.sigma_t);
-    glm::ivec3 c;
-    for (c.z = 0; c.z < own.extent.z; ++c.z) {
-        for (c.y = 0; c.y < own.extent.y; ++c.y) {
-            for (c.x = 0; c.x < own.extent.x; ++c.x) {
-                const Bounds bounds = bounds_of_cell(*own.grid, own.first_cell + c);
-                own.bound.push_back(std::min(bounds.most, own.densest));
-                own.even.push_back(bounds.most > 0 && bounds.least >= own.bound.back());
-            }
-        }
-    }
+    for_each_point(glm::ivec3(0), own.extent, [&](glm::ivec3 cell) {
+        float least = std::numeric_limits<float>::infinity(), most = 0;
+        for_each_voxel_of_cell(*own.grid, own.first_cell + cell, [&](float value) {
+            least = std::min(least, value);
+            most = std::max(most, value);
+        });
+        own.bound.push_back(std::min(most, own.densest));
+        own.even.push_back(most > 0 && least >= own.bound.back());
+    });
     return own;
 }
 

@@ -18,21 +18,34 @@ namespace opaline::bake {
 /// voxel, and flights would never end.
 inline constexpr float kMostDepth = 64;
 
+/// Cells of a grid: the points [8 b, 8 b + 8) of brick b. A cell below a brick has values without a
+/// brick of its own: between its last voxels and the brick's first ones.
+struct CellGrid {
+    glm::mat3 to_index{1};  ///< index = to_index * position + offset
+    glm::vec3 offset{0};
+    glm::ivec3 first_cell{0}, extent{0};
+    std::vector<float> bound;  ///< of the values in each cell, x fastest
+};
+
+/// All but the bounds.
+template <class T>
+void place_cells(const formats::SparseGrid<T>& grid, const glm::dmat4& to_scene, CellGrid& cells) {
+    const glm::dmat4 to_index = glm::inverse(to_scene);
+    cells.to_index = glm::mat3(to_index);
+    cells.offset = glm::vec3(to_index[3]);
+    cells.first_cell = grid.first_brick - 1;
+    cells.extent = grid.extent + 1;
+}
+
 /// A volume for tracing. Coefficients are those without the forward peak.
-struct DensityVolume {
+struct DensityVolume : CellGrid {
     const formats::SparseGrid<float>* grid = nullptr;
     /// Density times albedo where that varies; null: `albedo` holds everywhere.
     const formats::SparseGrid<glm::vec3>* scattering = nullptr;
     std::shared_ptr<const ScaledGrids> scaled;  ///< holds both, where they are not the scene's
-    glm::mat3 to_index{1};                      ///< index = to_index * position + offset
-    glm::vec3 offset{0};
-    /// Cells: the points [8 b, 8 b + 8) of brick b. A cell below a brick has density without a
-    /// brick of its own: between its last voxels and the brick's first ones.
-    glm::ivec3 first_cell{0}, extent{0};
-    std::vector<float> bound;      ///< of the density in each cell, x fastest
-    std::vector<bool> even;        ///< whether it is that everywhere in the cell
-    std::array<float, 3> sigma_t;  ///< c' [1/m] where the density is 1, by band
-    std::array<float, 3> albedo;   ///< of c', by band; the largest where it varies
+    std::vector<bool> even;                     ///< whether it is that everywhere in the cell
+    std::array<float, 3> sigma_t;               ///< c' [1/m] where the density is 1, by band
+    std::array<float, 3> albedo;                ///< of c', by band; the largest where it varies
     ScaledPhase phase;
 
     float densest = 0;  ///< kMostDepth of extinction in a voxel: more looks alike
@@ -80,7 +93,7 @@ struct Collision {
 };
 
 /// Calls visit(bound, begin, end) for the cells with density that the ray crosses in [0, reach], in
-/// order, distances in metres; ends early where that is false. `Volume` has cells as DensityVolume.
+/// order, distances in metres; ends early where that is false. `Volume`: a CellGrid.
 /// With a fourth argument the visitor learns whether the density is `bound` all over the cell.
 template <class Volume, class Visit>
 void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, float reach,

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "bake/volumes/density_space.h"
+#include "bake/volumes/grid_loops.h"
 
 namespace opaline::bake {
 
@@ -44,11 +45,7 @@ void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, floa
     while (true) {
         const int axis = next.x <= next.y ? (next.x <= next.z ? 0 : 2) : (next.y <= next.z ? 1 : 2);
         const float leave = std::min(std::max(next[axis], begin), end);
-        const std::size_t number =
-            (static_cast<std::size_t>(cell.z) * static_cast<std::size_t>(volume.extent.y) +
-             static_cast<std::size_t>(cell.y)) *
-                static_cast<std::size_t>(volume.extent.x) +
-            static_cast<std::size_t>(cell.x);
+        const std::size_t number = number_in(volume.extent, cell);
         const float bound = volume.bound[number];
         if (bound > 0 && leave > begin) {
             bool goes_on = true;

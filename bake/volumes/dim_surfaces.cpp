@@ -26,11 +26,9 @@ std::vector<float> transmittance(const DensitySpace& space, const LightCells& ce
     const std::size_t bands = space.extinction_bands(), texels = formats::cubemap_texels(n);
     std::vector<float> coarse(bands * cells.size());
     gather_transmittance(space, cells, position, coarse);
-    const std::size_t block = n / cells.n, m = cells.n;
     std::vector<float> fine(bands * texels);
     for (std::size_t i = 0; i < fine.size(); ++i) {
-        const std::size_t column = i % n, row = i / n % n, face = i / n / n;  // of all bands
-        fine[i] = coarse[(face * m + row / block) * m + column / block];
+        fine[i] = coarse[coarser_texel(i, n, cells.n)];
     }
     return fine;
 }
@@ -40,12 +38,9 @@ std::vector<float> decode_texels(const formats::SparseRowsView& rows,
                                  const formats::RowRange& range, std::uint32_t row,
                                  std::uint32_t band) {
     const std::uint32_t n = rows.cubemap_size;
-    std::vector<float> dense(formats::cubemap_texels(n)), scratch(std::size_t{n} * n);
+    std::vector<float> dense(formats::cubemap_texels(n));
     formats::decode_row(rows, range, row, band, dense);
-    for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
-        formats::haar_inverse(std::span(dense).subspan(face * n * n, std::size_t{n} * n), n,
-                              scratch);
-    }
+    haar_inverse_cube(dense, n);
     return dense;
 }
 

@@ -1,22 +1,18 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
+#include "bake/volumes/density_space.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// Light that a volume sends out by itself, as walks gather it. Cells as DensityVolume's.
-struct GlowingGrid {
+/// Light that a volume sends out by itself, as walks gather it; bounds are of its largest channel.
+struct GlowingGrid : CellGrid {
     const formats::SparseGrid<glm::vec3>* grid = nullptr;  ///< radiance per metre
     std::uint32_t volume = 0;                              ///< of the scene
-    glm::mat3 to_index{1};                                 ///< index = to_index * position + offset
-    glm::vec3 offset{0};
-    glm::ivec3 first_cell{0}, extent{0};
-    std::vector<float> bound;  ///< largest channel in each cell, x fastest
 };
 
 /// Those of these volumes that glow, in order. `scene` must outlive it.

@@ -6,7 +6,6 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/volumes/volume_walks.h"
 #include "bake/volumes/walk_parts.h"
 #include "formats/opal/spherical_harmonics.h"
 
@@ -15,7 +14,7 @@ namespace {
 
 // Bands [first, end) that follow the extinction of `first`.
 struct Bands {
-    int first = 0, end = 3;
+    std::size_t first = 0, end = 3;
 };
 
 // Adds to `sum`, one for each grid, the light that arrives at a point from a direction: a walk
@@ -24,36 +23,30 @@ struct Bands {
 std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::vec3 at,
                           glm::vec3 direction, FlightRandom& random, std::span<glm::vec3> sum) {
     std::uint64_t traced = 0;
-    glm::vec3 weight(0);
-    for (int band = bands.first; band < bands.end; ++band) {
+    std::array<float, 3> weight{};
+    for (std::size_t band = bands.first; band < bands.end; ++band) {
         weight[band] = 1;
     }
     for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
         const float reach = find_surface(walk.rays, at, direction, traced).distance;
-        const Collision hit = sample_flight(walk.space, static_cast<std::size_t>(bands.first), at,
-                                            direction, reach, random);
+        const Collision hit = sample_flight(walk.space, bands.first, at, direction, reach, random);
         const float length = hit.happens ? hit.distance : reach;
         for (std::size_t i = 0; i < walk.glow.size(); ++i) {
-            sum[i] += weight * glow_along(walk.glow[i], at, direction, length);
+            sum[i] += glm::vec3(weight[0], weight[1], weight[2]) *
+                      glow_along(walk.glow[i], at, direction, length);
         }
         if (!hit.happens) {
             break;
         }
         at += hit.distance * direction;
         const DensityVolume& own = walk.space.volumes[hit.volume];
-        const std::array<float, 3> albedo = own.albedo_at(at);
-        float most = 0;
-        for (int band = bands.first; band < bands.end; ++band) {
-            weight[band] *= albedo[static_cast<std::size_t>(band)];
-            most = std::max(most, std::abs(weight[band]));
+        if (!survives(own.albedo_at(at), bands.first, bands.end, weight, random)) {
+            break;
         }
-        if (most < kWalkRoulette) {
-            if (random() * kWalkRoulette >= most) {
-                break;
-            }
-            weight *= kWalkRoulette / most;
+        const SampledCosine sampled = turn_walk(own.phase, direction, random);
+        for (float& w : weight) {
+            w *= sampled.weight;
         }
-        weight *= turn_walk(own.phase, direction, random).weight;
     }
     return traced;
 }
@@ -88,14 +81,11 @@ std::uint64_t gather_glow(const GlowWalkSpace& walk, const GlowReceiver& receive
             }
         }
     }
-    // Coefficient k of J is (-1)^l lambda'_l times that of the incident radiance.
     const ScaledPhase& phase = walk.space.volumes[receiver.volume].phase;
     constexpr float kSphere = 4 * std::numbers::pi_v<float>;
-    for (std::uint32_t k = 0, degree = 0; k < receiver.terms; ++k) {
-        degree += k >= (degree + 1) * (degree + 1) ? 1 : 0;
-        const float factor = (degree % 2 == 0 ? kSphere : -kSphere) *
-                             static_cast<float>(phase.lambda[degree]) /
-                             static_cast<float>(receiver.walks);
+    for (std::uint32_t k = 0; k < receiver.terms; ++k) {
+        const float factor =
+            kSphere * scattered_harmonic(phase, k) / static_cast<float>(receiver.walks);
         for (std::size_t grid = 0; grid < sum.size(); ++grid) {
             out[grid * receiver.terms + k] *= factor;
         }

@@ -1,7 +1,6 @@
 #include "bake/volumes/light_cells.h"
 
 #include <algorithm>
-#include <span>
 
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -30,10 +29,17 @@ std::vector<float> reduce_cells(const std::vector<float>& values, std::uint32_t 
     std::vector<float> reduced(formats::cubemap_texels(coarse), 0.0f);
     const float share = 1.0f / static_cast<float>(block * block);
     for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::size_t column = i % fine, row = i / fine % fine, face = i / fine / fine;
-        reduced[(face * coarse + row / block) * coarse + column / block] += share * values[i];
+        reduced[coarser_texel(i, fine, coarse)] += share * values[i];
     }
     return reduced;
+}
+
+void haar_inverse_cube(std::span<float> cube, std::uint32_t n) {
+    const std::size_t size = std::size_t{n} * n;
+    std::vector<float> scratch(size);
+    for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
+        formats::haar_inverse(cube.subspan(face * size, size), n, scratch);
+    }
 }
 
 std::vector<float> transform_cells(std::vector<float> values, std::uint32_t m, std::uint32_t n) {

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace opaline::bake {
@@ -22,6 +24,16 @@ LightCells make_light_cells(std::uint32_t n);
 /// two with coarse <= fine.
 std::vector<float> reduce_cells(const std::vector<float>& values, std::uint32_t fine,
                                 std::uint32_t coarse);
+
+/// The texel of a cube map of m x m texels that holds texel i of one of n x n, a multiple of m;
+/// maps of several bands follow each other in both.
+inline std::size_t coarser_texel(std::size_t i, std::size_t n, std::size_t m) {
+    const std::size_t column = i % n, row = i / n % n, face = i / n / n, block = n / m;
+    return (face * m + row / block) * m + column / block;
+}
+
+/// Texel values from Haar coefficients, in place: 6 n n.
+void haar_inverse_cube(std::span<float> cube, std::uint32_t n);
 
 /// Haar coefficients of a cube map of n x n texels, made of the texel values of one of m x m, m <=
 /// n: every value covers (n / m)^2 texels. `values`: 6 m m; result: 6 n n.

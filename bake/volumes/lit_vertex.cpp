@@ -52,11 +52,10 @@ LitRow answer_of_medium(std::span<const float> texels, std::span<const double> s
 
 void add_sent_light(const SentLight& light, const LitVertex& lit, const LitRow& answer,
                     std::uint32_t band, std::uint32_t n, std::span<float> texels) {
-    const std::size_t m = light.cells.n, block = n / m, cells = light.cells.size();
+    const std::size_t cells = light.cells.size();
     const std::size_t first = light.bands() == 1 ? 0 : band * cells;
     for (std::size_t i = 0; i < texels.size(); ++i) {
-        const std::size_t column = i % n, row = i / n % n, face = i / n / n;
-        const std::size_t cell = first + (face * m + row / block) * m + column / block;
+        const std::size_t cell = first + coarser_texel(i, n, light.cells.n);
         texels[i] += answer.front * lit.front.rows[cell];
         if (!lit.back.rows.empty()) {
             texels[i] += answer.back * lit.back.rows[cell];

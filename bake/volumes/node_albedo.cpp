@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdlib>
+
+#include "bake/volumes/grid_loops.h"
 
 namespace opaline::bake {
 namespace {
@@ -18,19 +19,13 @@ struct TentSum {
 
 TentSum sum_tent(const DensityVolume& volume, glm::ivec3 node, int reach) {
     TentSum sum;
-    glm::ivec3 d;
-    for (d.z = 1 - reach; d.z < reach; ++d.z) {
-        for (d.y = 1 - reach; d.y < reach; ++d.y) {
-            for (d.x = 1 - reach; d.x < reach; ++d.x) {
-                const float density = volume.grid->at(node + d);
-                if (!(density > 0)) continue;
-                const glm::ivec3 left = reach - glm::abs(d);
-                const auto weight = static_cast<float>(left.x * left.y * left.z);
-                sum.density += weight * density;
-                sum.scattering += weight * volume.scattering->at(node + d);
-            }
+    for_each_voxel_around(node, reach, [&](glm::ivec3 voxel, float weight) {
+        const float density = volume.grid->at(voxel);
+        if (density > 0) {
+            sum.density += weight * density;
+            sum.scattering += weight * volume.scattering->at(voxel);
         }
-    }
+    });
     return sum;
 }
 
@@ -66,7 +61,7 @@ Squares compare_brick(const DensityVolume& volume, glm::ivec3 brick, std::uint32
         const glm::vec3 w = glm::vec3(at - step * low) / static_cast<float>(step);
         glm::vec3 between(0);
         for (int c = 0; c < 8; ++c) {
-            const glm::ivec3 up(c & 1, c >> 1 & 1, c >> 2), node = low + up;
+            const glm::ivec3 up = corner_of_cube(c), node = low + up;
             const glm::vec3 each = glm::mix(1.0f - w, w, glm::vec3(up));
             const int number = (node.z * side + node.y) * side + node.x;
             between += each.x * each.y * each.z * corner[static_cast<std::size_t>(number)];
@@ -104,18 +99,14 @@ double lost_albedo_detail(const DensityVolume& volume, std::uint32_t spacing) {
     const Grid& grid = *volume.grid;
     const std::size_t stride = (grid.brick_count() + kMostBricks - 1) / kMostBricks;
     Squares sum;
-    std::size_t cell = 0, seen = 0;
-    glm::ivec3 b;
-    for (b.z = 0; b.z < grid.extent.z; ++b.z) {
-        for (b.y = 0; b.y < grid.extent.y; ++b.y) {
-            for (b.x = 0; b.x < grid.extent.x; ++b.x) {
-                if (grid.table[cell++] == Grid::kEmpty || seen++ % stride != 0) continue;
-                const Squares own = compare_brick(volume, grid.first_brick + b, spacing);
-                sum.lost += own.lost;
-                sum.all += own.all;
-            }
+    std::size_t seen = 0;
+    for_each_point(grid.first_brick, grid.first_brick + grid.extent, [&](glm::ivec3 brick) {
+        if (grid.brick_at(brick) != Grid::kEmpty && seen++ % stride == 0) {
+            const Squares own = compare_brick(volume, brick, spacing);
+            sum.lost += own.lost;
+            sum.all += own.all;
         }
-    }
+    });
     return sum.all > 0 ? std::sqrt(sum.lost / sum.all) : 0;
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
 
+#include "bake/volumes/grid_loops.h"
 #include "formats/opal/volumes.h"
 
 namespace opaline::bake {
@@ -15,8 +15,7 @@ using Grid = formats::SparseGrid<float>;
 // Whether any of the voxels 8 b .. 8 b + 8 sends out light.
 bool reaches_glow(const formats::SparseGrid<glm::vec3>& glow, glm::ivec3 brick) {
     for (int c = 0; c < 8; ++c) {
-        const glm::ivec3 above(c & 1, c >> 1 & 1, c >> 2);
-        if (glow.brick_at(brick + above) != formats::SparseGrid<glm::vec3>::kEmpty) {
+        if (glow.brick_at(brick + corner_of_cube(c)) != formats::SparseGrid<glm::vec3>::kEmpty) {
             return true;
         }
     }
@@ -29,7 +28,7 @@ std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spa
     std::array<const float*, 8> values{};  // of the brick and those above it, which it reaches
     bool is_empty = true;
     for (int c = 0; c < 8; ++c) {
-        const std::uint32_t number = grid.brick_at(brick + glm::ivec3(c & 1, c >> 1 & 1, c >> 2));
+        const std::uint32_t number = grid.brick_at(brick + corner_of_cube(c));
         if (number != Grid::kEmpty) {
             values[static_cast<std::size_t>(c)] = grid.brick(number).data();
             is_empty = false;
@@ -41,43 +40,28 @@ std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spa
     }
     constexpr int kSide = Grid::kSide;
     const int cells = kSide / spacing;
-    has.resize(static_cast<std::size_t>(cells) * static_cast<std::size_t>(cells) *
-               static_cast<std::size_t>(cells));
+    has.resize(static_cast<std::size_t>(cells * cells * cells));
     is_empty = true;
-    // Both cells that share a voxel have what it has.
-    const auto first = [&](int v) { return std::max(0, (v + spacing - 1) / spacing - 1); };
-    const auto last = [&](int v) { return std::min(cells - 1, v / spacing); };
-    for (int z = 0; z <= kSide; ++z) {
-        for (int y = 0; y <= kSide; ++y) {
-            for (int x = 0; x <= kSide; ++x) {
-                const float* const own = values[static_cast<std::size_t>(
-                    (z / kSide) << 2 | (y / kSide) << 1 | x / kSide)];
-                if (own == nullptr ||
-                    !(own[((z % kSide) * kSide + y % kSide) * kSide + x % kSide] > 0)) {
-                    continue;
-                }
-                is_empty = false;
-                for (int k = first(z); k <= last(z); ++k) {
-                    for (int j = first(y); j <= last(y); ++j) {
-                        for (int i = first(x); i <= last(x); ++i) {
-                            has[static_cast<std::uint32_t>((k * cells + j) * cells + i)] = true;
-                        }
-                    }
-                }
-            }
+    for_each_point(glm::ivec3(0), glm::ivec3(kSide + 1), [&](glm::ivec3 v) {
+        const glm::ivec3 above = v / kSide;
+        const float* const own =
+            values[static_cast<std::size_t>(above.z << 2 | above.y << 1 | above.x)];
+        if (own == nullptr || !(own[Grid::offset_in_brick(v)] > 0)) {
+            return;
         }
-    }
+        is_empty = false;
+        // Both cells that share a voxel have what it has.
+        for_each_point(glm::max((v + spacing - 1) / spacing - 1, glm::ivec3(0)),
+                       glm::min(v / spacing + 1, glm::ivec3(cells)),
+                       [&](glm::ivec3 cell) { has[number_in(glm::ivec3(cells), cell)] = true; });
+    });
     return is_empty ? std::vector<bool>() : has;
 }
 
 bool touches_density(const std::vector<bool>& has, glm::ivec3 corner, int cells) {
     for (int c = 0; c < 8; ++c) {
-        const glm::ivec3 at = corner - glm::ivec3(c & 1, c >> 1 & 1, c >> 2);
-        if (at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < cells && at.y < cells && at.z < cells &&
-            has[(static_cast<std::size_t>(at.z) * static_cast<std::size_t>(cells) +
-                 static_cast<std::size_t>(at.y)) *
-                    static_cast<std::size_t>(cells) +
-                static_cast<std::size_t>(at.x)]) {
+        const glm::ivec3 at = corner - corner_of_cube(c);
+        if (is_within(glm::ivec3(cells), at) && has[number_in(glm::ivec3(cells), at)]) {
             return true;
         }
     }
@@ -88,26 +72,23 @@ bool touches_density(const std::vector<bool>& has, glm::ivec3 corner, int cells)
 class NodeNumbers {
   public:
     NodeNumbers(glm::ivec3 first_brick, glm::ivec3 extent, int spacing)
-        : first_(first_brick), extent_(extent), spacing_(spacing), cells_(Grid::kSide / spacing) {
-        block_.resize(static_cast<std::size_t>(extent.x) * static_cast<std::size_t>(extent.y) *
-                          static_cast<std::size_t>(extent.z),
-                      Grid::kEmpty);
-    }
+        : first_(first_brick),
+          extent_(extent),
+          spacing_(spacing),
+          cells_(Grid::kSide / spacing),
+          block_(number_in(extent, {0, 0, extent.z}), Grid::kEmpty) {}
     // kNoNode until it is set. Precondition: the voxel's coordinates are multiples of the spacing,
     // in one of the bricks.
     std::uint32_t& at(glm::ivec3 voxel) {
-        const glm::ivec3 brick = Grid::brick_of(voxel), b = brick - first_;
+        const glm::ivec3 brick = Grid::brick_of(voxel);
         const auto size = static_cast<std::uint32_t>(cells_ * cells_ * cells_);
-        std::uint32_t& block = block_[static_cast<std::size_t>(b.z * extent_.y + b.y) *
-                                          static_cast<std::size_t>(extent_.x) +
-                                      static_cast<std::size_t>(b.x)];
+        std::uint32_t& block = block_[number_in(extent_, brick - first_)];
         if (block == Grid::kEmpty) {
             block = static_cast<std::uint32_t>(number_.size() / size);
             number_.resize(number_.size() + size, formats::kNoNode);
         }
         const glm::ivec3 c = (voxel - brick * Grid::kSide) / spacing_;
-        return number_[std::size_t{block} * size +
-                       static_cast<std::size_t>((c.z * cells_ + c.y) * cells_ + c.x)];
+        return number_[std::size_t{block} * size + number_in(glm::ivec3(cells_), c)];
     }
 
   private:
@@ -127,39 +108,29 @@ NodeLattice make_node_lattice(const Grid& grid, std::uint32_t spacing,
     lattice.extent = grid.extent + 1;
     const int step = static_cast<int>(spacing), cells = Grid::kSide / step;
     NodeNumbers number(lattice.first_brick, lattice.extent + 1, step);
-    glm::ivec3 b;
-    for (b.z = 0; b.z < lattice.extent.z; ++b.z) {
-        for (b.y = 0; b.y < lattice.extent.y; ++b.y) {
-            for (b.x = 0; b.x < lattice.extent.x; ++b.x) {
-                const glm::ivec3 brick = lattice.first_brick + b;
-                const std::vector<bool> has = cells_with_density(grid, brick, step);
-                if (has.empty() && !reaches_glow(glow, brick)) {
-                    lattice.table.push_back(formats::kNoBrick);
-                    continue;
-                }
-                lattice.table.push_back(static_cast<std::uint32_t>(lattice.brick.size()));
-                lattice.brick.push_back(brick);
-                glm::ivec3 c;
-                for (c.z = 0; c.z <= cells; ++c.z) {
-                    for (c.y = 0; c.y <= cells; ++c.y) {
-                        for (c.x = 0; c.x <= cells; ++c.x) {
-                            if (has.empty() || !touches_density(has, c, cells)) {
-                                lattice.corner.push_back(formats::kNoNode);
-                                continue;
-                            }
-                            const glm::ivec3 voxel = brick * Grid::kSide + c * step;
-                            std::uint32_t& node = number.at(voxel);
-                            if (node == formats::kNoNode) {
-                                node = static_cast<std::uint32_t>(lattice.node.size());
-                                lattice.node.push_back(voxel);
-                            }
-                            lattice.corner.push_back(node);
-                        }
-                    }
-                }
-            }
+    const auto end = lattice.first_brick + lattice.extent;
+    for_each_point(lattice.first_brick, end, [&](glm::ivec3 brick) {
+        const std::vector<bool> has = cells_with_density(grid, brick, step);
+        if (has.empty() && !reaches_glow(glow, brick)) {
+            lattice.table.push_back(formats::kNoBrick);
+            return;
         }
-    }
+        lattice.table.push_back(static_cast<std::uint32_t>(lattice.brick.size()));
+        lattice.brick.push_back(brick);
+        for_each_point(glm::ivec3(0), glm::ivec3(cells + 1), [&](glm::ivec3 c) {
+            if (has.empty() || !touches_density(has, c, cells)) {
+                lattice.corner.push_back(formats::kNoNode);
+                return;
+            }
+            const glm::ivec3 voxel = brick * Grid::kSide + c * step;
+            std::uint32_t& node = number.at(voxel);
+            if (node == formats::kNoNode) {
+                node = static_cast<std::uint32_t>(lattice.node.size());
+                lattice.node.push_back(voxel);
+            }
+            lattice.corner.push_back(node);
+        });
+    });
     return lattice;
 }
 
@@ -169,15 +140,10 @@ NodesAround nodes_around(const NodeLattice& lattice, glm::vec3 index) {
     around.node.fill(formats::kNoNode);
     const glm::vec3 low = glm::floor(index / kSide);
     const glm::ivec3 b = glm::ivec3(low) - lattice.first_brick;
-    if (b.x < 0 || b.y < 0 || b.z < 0 || b.x >= lattice.extent.x || b.y >= lattice.extent.y ||
-        b.z >= lattice.extent.z) {
+    if (!is_within(lattice.extent, b)) {
         return around;
     }
-    const std::uint32_t brick =
-        lattice.table[(static_cast<std::size_t>(b.z) * static_cast<std::size_t>(lattice.extent.y) +
-                       static_cast<std::size_t>(b.y)) *
-                          static_cast<std::size_t>(lattice.extent.x) +
-                      static_cast<std::size_t>(b.x)];
+    const std::uint32_t brick = lattice.table[number_in(lattice.extent, b)];
     if (brick == formats::kNoBrick) {
         return around;
     }
@@ -185,15 +151,11 @@ NodesAround nodes_around(const NodeLattice& lattice, glm::vec3 index) {
     const glm::vec3 at = (index - low * kSide) / static_cast<float>(lattice.spacing);
     const glm::ivec3 cell = glm::clamp(glm::ivec3(at), 0, cells - 1);
     const glm::vec3 f = glm::clamp(at - glm::vec3(cell), 0.0f, 1.0f);
-    const auto along = static_cast<std::size_t>(cells) + 1;
+    const glm::ivec3 corners(cells + 1);
+    const std::size_t first = brick * number_in(corners, {0, 0, cells + 1});
     for (int c = 0; c < 8; ++c) {
-        const glm::ivec3 corner = cell + glm::ivec3(c & 1, c >> 1 & 1, c >> 2);
         const auto i = static_cast<std::size_t>(c);
-        around.node[i] = lattice.corner[brick * along * along * along +
-                                        (static_cast<std::size_t>(corner.z) * along +
-                                         static_cast<std::size_t>(corner.y)) *
-                                            along +
-                                        static_cast<std::size_t>(corner.x)];
+        around.node[i] = lattice.corner[first + number_in(corners, cell + corner_of_cube(c))];
         around.weight[i] = ((c & 1) != 0 ? f.x : 1 - f.x) * ((c & 2) != 0 ? f.y : 1 - f.y) *
                            ((c & 4) != 0 ? f.z : 1 - f.z);
     }

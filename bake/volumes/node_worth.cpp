@@ -2,30 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <glm/glm.hpp>
 
+#include "bake/volumes/grid_loops.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
 
 std::vector<float> node_densities(const formats::SparseGrid<float>& density,
                                   const NodeLattice& lattice) {
-    const int reach = static_cast<int>(lattice.spacing);
     float most = 0;
     std::vector<float> means;
     means.reserve(lattice.node.size());
     for (const glm::ivec3 node : lattice.node) {
         float sum = 0;
-        glm::ivec3 d;
-        for (d.z = 1 - reach; d.z < reach; ++d.z) {
-            for (d.y = 1 - reach; d.y < reach; ++d.y) {
-                for (d.x = 1 - reach; d.x < reach; ++d.x) {
-                    const glm::ivec3 left = reach - glm::abs(d);
-                    sum += static_cast<float>(left.x * left.y * left.z) * density.at(node + d);
-                }
-            }
-        }
+        for_each_voxel_around(
+            node, static_cast<int>(lattice.spacing),
+            [&](glm::ivec3 voxel, float weight) { sum += weight * density.at(voxel); });
         means.push_back(sum);
         most = std::max(most, sum);
     }

@@ -17,6 +17,14 @@ DensitySpace make_density_space(const formats::Scene& scene,
     return space;
 }
 
+std::uint32_t fine_cells(const Knobs& knobs) {
+    return std::min(knobs.cubemap_size, knobs.quality == Quality::reference ? 32u : 16u);
+}
+
+std::uint32_t coarse_cells(const Knobs& knobs) {
+    return std::min(knobs.cubemap_size, knobs.quality == Quality::reference ? 16u : 8u);
+}
+
 NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout) {
     return layout.glows ? make_node_lattice(volume.density, layout.spacing, volume.emission)
                         : make_node_lattice(volume.density, layout.spacing);
@@ -42,11 +50,9 @@ PlacedNodes place_nodes(const VolumeJob& job) {
         nodes.albedo.push_back(node_albedo_shares(nodes.space.volumes[v], nodes.lattices[v]));
         nodes.density.push_back(node_densities(job.scene.volumes[v].density, nodes.lattices[v]));
     }
-    // Light changes little within 5 degrees, light that is scattered often within 11.
+    nodes.fine = make_light_cells(fine_cells(job.knobs));
+    nodes.coarse = make_light_cells(coarse_cells(job.knobs));
     const std::uint32_t n = job.knobs.cubemap_size;
-    const bool is_exact = job.knobs.quality == Quality::reference;
-    nodes.fine = make_light_cells(is_exact ? std::min(n, 32u) : std::min(n, 16u));
-    nodes.coarse = make_light_cells(is_exact ? std::min(n, 16u) : std::min(n, 8u));
     constexpr std::array<double, 4> kTolerance{0.03, 0.015, 0.005, 0.0};
     for (const VolumeLayout& layout : job.layouts) {
         const NodeCoefficients most = node_coefficients(job.knobs, layout.often_terms);

@@ -32,6 +32,11 @@ struct VolumeJob {
 /// The volumes of a scene, with the rows of layouts.
 DensitySpace make_density_space(const formats::Scene& scene, std::span<const VolumeLayout> layouts);
 
+/// Edges of the cube maps of single scattering, and of multiple scattering, which is smoother:
+/// light changes little within 5 degrees, light that is scattered often within 11.
+std::uint32_t fine_cells(const Knobs& knobs);
+std::uint32_t coarse_cells(const Knobs& knobs);
+
 /// Where the light of a volume is baked.
 NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout);
 
@@ -44,8 +49,7 @@ struct PlacedNodes {
     std::vector<std::vector<glm::vec3>> albedo;  ///< shares of each volume's nodes
     std::vector<std::vector<float>> density;     ///< around each volume's nodes
     std::size_t count = 0;
-    LightCells fine;                                 ///< of single scattering
-    LightCells coarse;                               ///< of multiple scattering, which is smoother
+    LightCells fine, coarse;                         ///< fine_cells, coarse_cells
     std::vector<NodeEncoder> attenuated, scattered;  ///< of row V and of all T_k, one a layout
 };
 

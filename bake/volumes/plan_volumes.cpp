@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -87,6 +88,11 @@ PlanEntry decide(std::string_view name, const Subject& subject, double bound, co
     return entry;
 }
 
+// Why it is on or off, unless that is told already.
+void explain(PlanEntry& entry, const std::string& on, const std::string& off) {
+    if (entry.reason.empty()) entry.reason = entry.on ? on : off;
+}
+
 // What is known of a volume whose density is the same in places; "" where it is nowhere.
 std::string tell_evenness(const DensityVolume& volume) {
     const double share = even_share(volume);
@@ -118,12 +124,8 @@ double scattered_glow(double glow, double once) {
 PlanEntry decide_glow(const formats::Volume& volume, const Subject& subject, const Knobs& knobs) {
     PlanEntry entry = decide(kEmitters, subject, largest_glow(volume), knobs);
     entry.has_bands = true;
-    if (entry.on) {
-        entry.reason = "it sends out light by itself, as an emitter";
-    } else if (entry.reason.empty()) {
-        entry.reason =
-            "what it sends out by itself is too dark to be seen beside light of radiance 1";
-    }
+    explain(entry, "it sends out light by itself, as an emitter",
+            "what it sends out by itself is too dark to be seen beside light of radiance 1");
     return entry;
 }
 
@@ -134,11 +136,9 @@ PlanEntry decide_sent(const formats::Scene& scene, const formats::Volume& volume
     if (entry.on && !scatters) {
         entry.on = entry.forced = false;
         entry.reason = "what the volume scatters is left out";
-    } else if (entry.on) {
-        entry.reason = "surfaces receive what the volume scatters";
-    } else if (entry.reason.empty()) {
-        entry.reason = "what it scatters is too dark, or surfaces are too far away";
     }
+    explain(entry, "surfaces receive what the volume scatters",
+            "what it scatters is too dark, or surfaces are too far away");
     return entry;
 }
 
@@ -147,11 +147,8 @@ PlanEntry decide_seen(const SentShare& share, double once, const Subject& subjec
                       const Knobs& knobs) {
     PlanEntry entry = decide(kSurfacesToVolumes, subject, share.all * once, knobs);
     entry.has_bands = !share.is_grey;
-    if (entry.on) {
-        entry.reason = "the volume scatters what surfaces send to it";
-    } else if (entry.reason.empty()) {
-        entry.reason = "so thin or dark that what surfaces send to it is not seen";
-    }
+    explain(entry, "the volume scatters what surfaces send to it",
+            "so thin or dark that what surfaces send to it is not seen");
     return entry;
 }
 
@@ -243,20 +240,15 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         PlanEntry often = decide(kOftenInVolumes, subject, most.once * most.once, knobs);
         VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
         layout.whole = v;
-        if (once.on) {
-            layout.once_terms = once.terms = phase.harmonics();
-            once.reason =
-                once.terms == 1
-                    ? "light is scattered alike in all directions: one view term"
-                    : "light is scattered once: " + std::to_string(once.terms) + " view terms";
-            once.reason += tell_evenness(space.volumes[v]);
-        } else if (once.reason.empty()) {
-            once.reason = why_dark(most);
-        }
-        if (!often.on && often.reason.empty()) {
-            often.reason =
-                once.on ? "so thin or dark that light is scattered once at most" : why_dark(most);
-        }
+        layout.once_terms = once.terms = once.on ? phase.harmonics() : 0;
+        explain(once,
+                (once.terms == 1
+                     ? "light is scattered alike in all directions: one view term"
+                     : "light is scattered once: " + std::to_string(once.terms) + " view terms") +
+                    tell_evenness(space.volumes[v]),
+                why_dark(most));
+        explain(often, "",
+                once.on ? "so thin or dark that light is scattered once at most" : why_dark(most));
         PlanEntry seen = decide_seen(share, most.once, subject, knobs);
         lay_out_often(often, seen, phase, knobs, layout);
         often.terms = often.on ? layout.often_terms : 0;

@@ -7,7 +7,6 @@
 #include "bake/plan/surface_albedo.h"
 #include "bake/volumes/attenuation.h"
 #include "formats/opal/cubemap.h"
-#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
@@ -43,8 +42,7 @@ std::vector<float> read_cells(const formats::SparseRowsView& rows, const formats
                               std::span<const float> weight, std::size_t vertex, std::uint32_t band,
                               std::uint32_t cells) {
     const std::uint32_t n = rows.cubemap_size;
-    std::vector<float> sum(formats::cubemap_texels(n)), row(sum.size()),
-        scratch(std::size_t{n} * n);
+    std::vector<float> sum(formats::cubemap_texels(n)), row(sum.size());
     for (std::uint32_t k = 0; k < weight.size(); ++k) {
         if (weight[k] == 0) {
             continue;
@@ -55,9 +53,7 @@ std::vector<float> read_cells(const formats::SparseRowsView& rows, const formats
             sum[i] += weight[k] * row[i];
         }
     }
-    for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
-        formats::haar_inverse(std::span(sum).subspan(face * n * n, std::size_t{n} * n), n, scratch);
-    }
+    haar_inverse_cube(sum, n);
     return reduce_cells(sum, n, cells);
 }
 

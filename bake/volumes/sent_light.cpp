@@ -14,7 +14,6 @@
 #include "bake/volumes/scattering_points.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/detail_codes.h"
-#include "formats/opal/haar.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
@@ -164,12 +163,9 @@ SentPacket draw_rays(const SentLight& light, const Receiver& at, std::uint32_t f
 // From sums to texels: J^(1) is V times a function of the direction of light.
 std::vector<float> finish_sums(const SentLight& light, SentSums sums, float scale) {
     const std::size_t cells = light.cells.size(), bands = light.bands();
-    const std::uint32_t m = light.cells.n;
-    std::vector<float> rows(light.row_size()), scratch(std::size_t{m} * m);
+    std::vector<float> rows(light.row_size());
     const auto add = [&](std::span<float> part, const float* harmonic, std::size_t band) {
-        for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
-            formats::haar_inverse(part.subspan(face * m * m, std::size_t{m} * m), m, scratch);
-        }
+        haar_inverse_cube(part, light.cells.n);
         for (std::size_t i = 0; i < cells; ++i) {
             rows[band * cells + i] += scale * (harmonic != nullptr ? harmonic[i] : 1) * part[i];
         }

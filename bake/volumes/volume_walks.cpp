@@ -69,19 +69,8 @@ std::uint64_t follow(const VolumeWalkSpace& walk, const WalkReceiver& receiver, 
         }
         at += hit.distance * direction;
         const DensityVolume& own = walk.space.volumes[hit.volume];
-        const std::array<float, 3> albedo = own.albedo_at(at);
-        float most = 0;
-        for (std::size_t band = track.first; band < track.end; ++band) {
-            weight[band] *= albedo[band];
-            most = std::max(most, std::abs(weight[band]));
-        }
-        if (most < kWalkRoulette) {
-            if (random() * kWalkRoulette >= most) {
-                break;
-            }
-            for (float& w : weight) {
-                w *= kWalkRoulette / most;
-            }
+        if (!survives(own.albedo_at(at), track.first, track.end, weight, random)) {
+            break;
         }
         if (receiver.sees_sky) {
             add_light(walk, track, hit.volume, at, direction, weight, sum);
@@ -128,14 +117,11 @@ std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& rece
             }
         }
     }
-    // Of J: coefficient k is (-1)^l lambda'_l times that of the incident radiance.
     const ScaledPhase& phase = walk.space.volumes[receiver.volume].phase;
     const float share = receiver.terms == 1 ? 1.0f : 4 * std::numbers::pi_v<float>;
-    for (std::uint32_t k = 0, degree = 0; k < receiver.terms; ++k) {
-        degree += k >= (degree + 1) * (degree + 1) ? 1 : 0;
-        const float factor = (degree % 2 == 0 ? share : -share) *
-                             static_cast<float>(phase.lambda[degree]) /
-                             static_cast<float>(receiver.walks);
+    for (std::uint32_t k = 0; k < receiver.terms; ++k) {
+        const float factor =
+            share * scattered_harmonic(phase, k) / static_cast<float>(receiver.walks);
         for (std::size_t j = 0; j < row; ++j) {
             out[k * row + j] *= factor;
         }

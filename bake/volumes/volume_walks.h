@@ -25,10 +25,6 @@ struct VolumeWalkSpace {
     const SeenSurfaces* surfaces = nullptr;  ///< that send light to volumes; null: black
 };
 
-/// A walk ends after so many scatterings. Only media thousands of mean free paths deep reach this,
-/// where the remaining light is negligible.
-inline constexpr std::uint32_t kMostScatterings = 2048;
-
 /// Where multiple scattering is wanted.
 struct WalkReceiver {
     std::uint32_t volume = 0;

@@ -6,7 +6,6 @@
 
 #include "bake/path_integral/path_estimate.h"
 #include "bake/path_integral/probe_depth.h"
-#include "bake/volumes/count_walk.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/path_medium.h"
@@ -14,6 +13,7 @@
 #include "bake/volumes/sent_light.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
+#include "bake/volumes/walk_parts.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/phase_table.h"
 
@@ -65,14 +65,6 @@ double count_path_steps(const DensitySpace& space, const MarchLimits& limits, gl
     return steps;
 }
 
-// Edges of the cube maps of light, as bake_volumes makes them.
-std::uint32_t fine_cells(const Knobs& knobs) {
-    return std::min(knobs.cubemap_size, knobs.quality == Quality::reference ? 32u : 16u);
-}
-std::uint32_t coarse_cells(const Knobs& knobs) {
-    return std::min(knobs.cubemap_size, knobs.quality == Quality::reference ? 16u : 8u);
-}
-
 // Bytes of rows that keep so many coefficients together.
 double bytes_of_rows(double rows, std::uint32_t coefficients, const VolumeWork& work,
                      const Knobs& knobs) {
@@ -116,13 +108,13 @@ void count_by_samples(const DensitySpace& space, const formats::Volume& volume,
     WalkCount walked;
     const MarchLimits limits{box_of(space), path_step_length(volume.density, lattice.spacing)};
     for (std::size_t i = 0; i < drawn; ++i) {
-        CostRandom random(i);
+        FlightRandom random(0, RandomStage::volume_costs, i);
         const glm::ivec3 node = lattice.node[(2 * i + 1) * count / (2 * drawn)];
         const glm::vec3 at(volume.density.to_scene * glm::dvec4(glm::dvec3(node), 1.0));
         for (std::size_t d = 0; d < kDirections; ++d) {
-            const glm::vec3 direction = random.direction();
+            const glm::vec3 direction = draw_direction(random);
             steps += count_steps(space, at, direction);
-            path_steps += count_path_steps(space, limits, at, random.direction(), direction);
+            path_steps += count_path_steps(space, limits, at, draw_direction(random), direction);
         }
         for (std::size_t w = 0; w < kWalks; ++w) {
             const WalkCount one = count_walk(space, at, random);

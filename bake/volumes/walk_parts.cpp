@@ -40,6 +40,62 @@ MetSurface find_surface(const RayScene& rays, glm::vec3 from, glm::vec3 directio
             hits.u[0],        hits.v[0],         hits.cosine[0] > 0};
 }
 
+bool survives(const std::array<float, 3>& albedo, std::size_t first, std::size_t end,
+              std::array<float, 3>& weight, FlightRandom& random) {
+    float most = 0;
+    for (std::size_t band = first; band < end; ++band) {
+        weight[band] *= albedo[band];
+        most = std::max(most, std::abs(weight[band]));
+    }
+    if (most < kWalkRoulette) {
+        if (random() * kWalkRoulette >= most) {
+            return false;
+        }
+        for (float& w : weight) {
+            w *= kWalkRoulette / most;
+        }
+    }
+    return true;
+}
+
+float scattered_harmonic(const ScaledPhase& phase, std::uint32_t k) {
+    std::size_t degree = 0;
+    while (k >= (degree + 1) * (degree + 1)) {
+        ++degree;
+    }
+    const auto lambda = static_cast<float>(phase.lambda[degree]);
+    return degree % 2 == 0 ? lambda : -lambda;
+}
+
+glm::vec3 draw_direction(FlightRandom& random) {
+    const float z = 1 - 2 * random(), r = std::sqrt(std::max(0.0f, 1 - z * z));
+    const float angle = 2 * std::numbers::pi_v<float> * random();
+    return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+WalkCount count_walk(const DensitySpace& space, glm::vec3 at, FlightRandom& random) {
+    constexpr float kForever = std::numeric_limits<float>::infinity();
+    constexpr std::size_t kGreen = 1;
+    WalkCount count;
+    glm::vec3 direction = draw_direction(random);
+    std::array<float, 3> weight{1, 1, 1};
+    for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
+        ++count.flights;
+        const Collision hit = sample_flight(space, kGreen, at, direction, kForever, random);
+        if (!hit.happens) {
+            break;
+        }
+        at += hit.distance * direction;
+        const DensityVolume& own = space.volumes[hit.volume];
+        if (!survives(own.albedo_at(at), kGreen, kGreen + 1, weight, random)) {
+            break;
+        }
+        ++count.collisions;
+        turn_walk(own.phase, direction, random);
+    }
+    return count;
+}
+
 SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, FlightRandom& random) {
     const SampledCosine sampled = sample_scaled(phase, random());
     const float angle = 2 * std::numbers::pi_v<float> * random();

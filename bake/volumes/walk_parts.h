@@ -8,11 +8,16 @@
 
 #include "bake/base/rng.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/density_space.h"
 #include "bake/volumes/scaled_phase.h"
 
 namespace opaline::bake {
 
 /// What random walks from nodes have in common, whatever light they look for.
+
+/// A walk ends after so many scatterings. Only media thousands of mean free paths deep reach this,
+/// where the remaining light is negligible.
+inline constexpr std::uint32_t kMostScatterings = 2048;
 
 /// Weight below which a walk may end by chance; those that go on have this weight.
 inline constexpr float kWalkRoulette = 0.25f;
@@ -56,6 +61,24 @@ struct MetSurface {
 /// Counts rays in `traced`.
 MetSurface find_surface(const RayScene& rays, glm::vec3 from, glm::vec3 direction,
                         std::uint64_t& traced);
+
+/// Multiplies the weights of the bands [first, end) by the albedo of a collision. False: the walk
+/// ends there by chance.
+bool survives(const std::array<float, 3>& albedo, std::size_t first, std::size_t end,
+              std::array<float, 3>& weight, FlightRandom& random);
+
+/// Coefficient k of J, by harmonics, over that of the incident radiance: (-1)^l lambda'_l.
+float scattered_harmonic(const ScaledPhase& phase, std::uint32_t k);
+
+struct WalkCount {
+    double flights = 0, collisions = 0;
+};
+
+/// A walk in green light from a point, as gather_walks follows it, without the light that joins it.
+WalkCount count_walk(const DensitySpace& space, glm::vec3 at, FlightRandom& random);
+
+/// Unit, uniform over the sphere.
+glm::vec3 draw_direction(FlightRandom& random);
 
 /// Turns a unit direction by the phase function; two random numbers.
 SampledCosine turn_walk(const ScaledPhase& phase, glm::vec3& direction, FlightRandom& random);

@@ -18,4 +18,13 @@ inline void expect_facing_normals(const TriangleMesh& mesh) {
     }
 }
 
+/// Of a closed mesh; negative where it faces inward.
+inline double enclosed_volume(const TriangleMesh& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        sum += glm::dot(mesh.position[a], glm::cross(mesh.position[b], mesh.position[c])) / 6;
+    }
+    return sum;
+}
+
 }  // namespace opaline::bake

@@ -18,13 +18,7 @@ TEST(PlayingPieces, SurfacesFaceOutward) {
     expect_facing_normals(make_board());
     for (const TriangleMesh& piece :
          {make_pawn(0, 0), make_draughtsman(0, 0), make_squashed_ball(0, 0), make_stand(0, 0)}) {
-        double volume = 0;
-        for (const Triangle& t : piece.triangles) {
-            volume += glm::dot(piece.position[t[0]],
-                               glm::cross(piece.position[t[1]], piece.position[t[2]])) /
-                      6;
-        }
-        EXPECT_GT(volume, 1000);
+        EXPECT_GT(enclosed_volume(piece), 1000);
         expect_facing_normals(piece);
     }
 }

@@ -34,18 +34,24 @@ const Baked& baked() {
     return kBaked;
 }
 
+// Cosines of radiance tables, by node.
+double table_cosine(std::size_t node, std::size_t count) {
+    const double s = static_cast<double>(node) / static_cast<double>(count - 1);
+    return s * s * (3 - 2 * s);
+}
+
+double table_depth(std::size_t node, std::size_t count) {
+    return static_cast<double>(node) / static_cast<double>(count - 1 - node);
+}
+
 // L as formats/opal/clouds.h states it, at nodes of the table.
 double stated_radiance(std::span<const float> values, std::size_t depth, std::size_t view,
                        std::size_t light, double azimuth) {
     const formats::LayerRecord& record = baked().record();
     const std::size_t n = record.radiance_cosines, modes = record.radiance_modes;
-    const auto cosine = [n](std::size_t j) {
-        const double s = static_cast<double>(j) / static_cast<double>(n - 1);
-        return std::max(1e-3, s * s * (3 - 2 * s));
-    };
-    const double tau =
-        static_cast<double>(depth) / static_cast<double>(record.radiance_depths - 1 - depth);
-    const double mu_v = cosine(view), mu_l = cosine(light);
+    const double tau = table_depth(depth, record.radiance_depths);
+    const double mu_v = std::max(1e-3, table_cosine(view, n)),
+                 mu_l = std::max(1e-3, table_cosine(light, n));
     double sum = 0;
     for (std::size_t m = 0; m < modes; ++m) {
         sum += static_cast<double>(values[((depth * modes + m) * n + view) * n + light]) *
@@ -65,18 +71,14 @@ TEST(LayerTables, RadianceIsThatOfTheFormulaInTheFormat) {
     const formats::LayerTables stored = baked().tables(band);
     const std::size_t n = table.size.cosines;
     for (const std::size_t depth : {2u, 9u}) {
-        const double tau =
-            static_cast<double>(depth) / static_cast<double>(table.size.depths - 1 - depth);
+        const double tau = table_depth(depth, table.size.depths);
         for (const std::size_t view : {std::size_t{1}, n / 2, n - 1}) {
             for (const std::size_t light : {std::size_t{2}, n / 2, n - 2}) {
                 for (const double azimuth : {0.0, 0.7, 2.0, pi}) {
-                    const auto cosine = [n](std::size_t j) {
-                        const double s = static_cast<double>(j) / static_cast<double>(n - 1);
-                        return s * s * (3 - 2 * s);
-                    };
                     for (const bool below : {false, true}) {
-                        const double expected = eval_radiance_table(table, tau, cosine(light),
-                                                                    cosine(view), azimuth, below);
+                        const double expected =
+                            eval_radiance_table(table, tau, table_cosine(light, n),
+                                                table_cosine(view, n), azimuth, below);
                         EXPECT_NEAR(stated_radiance(below ? stored.transmitted : stored.reflected,
                                                     depth, view, light, azimuth),
                                     expected, 1e-5 * (1 + std::abs(expected)));
@@ -93,12 +95,9 @@ TEST(LayerTables, RadianceIsThatOfTheSolver) {
     const formats::LayerRecord& record = baked().record();
     const std::size_t n = record.radiance_cosines, view = n / 2, light = n - 3;
     SlabRadianceRequest request;
-    request.optical_depth =
-        static_cast<double>(depth) / static_cast<double>(record.radiance_depths - 1 - depth);
-    for (const std::size_t j : {light, view}) {
-        const double s = static_cast<double>(j) / static_cast<double>(n - 1);
-        (j == light ? request.lights : request.view).push_back(s * s * (3 - 2 * s));
-    }
+    request.optical_depth = table_depth(depth, record.radiance_depths);
+    request.lights = {table_cosine(light, n)};
+    request.view = {table_cosine(view, n)};
     request.streams = 32;
     request.modes = record.radiance_modes;
     request.first_order = 2;
@@ -119,8 +118,7 @@ TEST(LayerTables, SharesOfTheFluxAreThoseOfTheSolver) {
     const std::size_t depth = record.flux_depths / 2, cosine = record.flux_cosines / 2;
     const double root = static_cast<double>(cosine) / (record.flux_cosines - 1.0);
     SlabRequest request;
-    request.optical_depth =
-        static_cast<double>(depth) / (record.flux_depths - 1.0 - static_cast<double>(depth));
+    request.optical_depth = table_depth(depth, record.flux_depths);
     request.cosine = {root * root};
     request.orders = 2;
     for (std::size_t band = 0; band < 3; ++band) {

@@ -34,8 +34,8 @@ const DropletBands& paper_bands() {
 }
 
 // R_3+ and T_3+ of appendix A with a row of appendix B, at H = 100 m or the like.
-OrderShares printed_shares(std::size_t row, double thickness, double straight) {
-    const ColumnModel& m = paper2006()[row].model;
+OrderShares printed_shares(unsigned row, double thickness, double straight) {
+    const ColumnModel m = paper2006_at(10 * row);
     const double x = m.extinction * thickness, e = std::exp(-x), t = m.forward, r = m.back;
     OrderShares s;
     s.transmitted[0] = straight;
@@ -81,7 +81,7 @@ TEST(PaperTables, FluxesAreThoseOfTheAppendixAtItsAngles) {
         EXPECT_NEAR(table.r1[at], expected.reflected[1], 1e-6);
         EXPECT_NEAR(table.t2[at], expected.transmitted[2], 1e-6);
         EXPECT_NEAR(table.r2[at], expected.reflected[2], 1e-6);
-        const ColumnModel& m = paper2006()[row].model;
+        const ColumnModel m = paper2006_at(10 * row);
         EXPECT_NEAR(table.t_ms[at], column_transmittance(m, thickness), 1e-6);
     }
     for (std::size_t j = 0; j < kSize.cosines; ++j) {
@@ -105,7 +105,7 @@ TEST(PaperTables, SecondOrderOfTheColumnIsTheCorrectedOne) {
 TEST(PaperTables, RadianceHasThePrintedEnergies) {
     const struct {
         double thickness;
-        std::size_t row;
+        unsigned row;
         double reflected, transmitted;
     } cases[] = {{100, 7, 0.149, 0.0263}, {100, 3, 0.0583, 0.114}, {5, 8, 0.153, 0.218}};
     const PeakSplit& split = paper_bands()[1].split;
@@ -113,7 +113,7 @@ TEST(PaperTables, RadianceHasThePrintedEnergies) {
     const GaussLegendre rule = make_gauss_legendre(64);
     for (const auto& c : cases) {
         const double depth = 0.022629 * c.thickness;
-        const double light = std::cos(paper2006()[c.row].degrees * pi / 180);
+        const double light = std::cos(10 * c.row * pi / 180);
         const OrderShares printed =
             printed_shares(c.row, paper_thickness(depth, split.weight), std::exp(-depth / light));
         for (const bool below : {false, true}) {

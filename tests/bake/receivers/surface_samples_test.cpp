@@ -10,16 +10,6 @@
 namespace opaline::bake {
 namespace {
 
-double area_of(const formats::Primitive& p) {
-    double sum = 0;
-    for (std::size_t t = 0; t < p.index.size(); t += 3) {
-        const glm::dvec3 a = p.position[p.index[t]];
-        sum += 0.5 * glm::length(glm::cross(glm::dvec3(p.position[p.index[t + 1]]) - a,
-                                            glm::dvec3(p.position[p.index[t + 2]]) - a));
-    }
-    return sum;
-}
-
 TEST(SurfaceSamples, AreasAddUpToTheSurface) {
     const auto scene = tests::make_scene({tests::make_sphere(3), tests::make_cube(2, false)});
     const auto samples = sample_surface(scene, {0, 1}, 1000, 5, {});
@@ -30,7 +20,8 @@ TEST(SurfaceSamples, AreasAddUpToTheSurface) {
         sum += s.area;
         on_sphere += s.primitive == 0 ? 1 : 0;
     }
-    const double sphere = area_of(scene.primitives[0]), cube = area_of(scene.primitives[1]);
+    const double sphere = formats::surface_area(scene.primitives[0]),
+                 cube = formats::surface_area(scene.primitives[1]);
     EXPECT_NEAR(sum / (sphere + cube), 1, 1e-5);
     // Elimination keeps slightly more points where neighbours are fewer: along the edges of a cube.
     EXPECT_NEAR(on_sphere / 1000.0, sphere / (sphere + cube), 0.02);
@@ -41,7 +32,8 @@ TEST(SurfaceSamples, AreasAddUpToTheSurface) {
 TEST(SurfaceSamples, SamplesKeepTheirDistance) {
     const auto scene = tests::make_scene({tests::make_sphere(4)});
     const auto samples = sample_surface(scene, {0}, 800, 1, {});
-    const double packed = std::sqrt(2 * area_of(scene.primitives[0]) / (std::sqrt(3.0) * 800));
+    const double packed =
+        std::sqrt(2 * formats::surface_area(scene.primitives[0]) / (std::sqrt(3.0) * 800));
     double closest = 10;
     for (std::size_t i = 0; i < samples.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
@@ -60,7 +52,7 @@ TEST(SurfaceSamples, MeansOverTheSurfaceAreMet) {
     double square = 0;
     const auto samples = sample_surface(scene, {0}, 800, 2, {});
     for (const SurfaceSample& s : samples) {
-        const double share = s.area / area_of(scene.primitives[0]);
+        const double share = s.area / formats::surface_area(scene.primitives[0]);
         mean += share * glm::dvec3(s.position);
         square += share * s.position.y * s.position.y;
     }
@@ -79,7 +71,8 @@ TEST(SurfaceSamples, BothSidesOfAThinSheetAreCoveredEqually) {
         area_up += s.geometric_normal.y > 0 ? s.area : 0;
     }
     EXPECT_NEAR(up, 300, 6);
-    EXPECT_NEAR(area_up / area_of(scene.primitives[0]), 1, 1e-5) << "cells end at their own side";
+    EXPECT_NEAR(area_up / formats::surface_area(scene.primitives[0]), 1, 1e-5)
+        << "cells end at their own side";
 }
 
 // The dipole requires that sums of a bell 1.2 spacings wide do not depend on the bell's position.

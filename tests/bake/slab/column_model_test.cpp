@@ -22,11 +22,11 @@ TEST(ColumnModelTest, HoldsThePrintedParametersOfThePaper) {
     for (const CloudRow& row : rows) {
         const std::string& quantity = row.text("quantity");
         bool found = false;
-        for (const bake::ColumnModelAt& at : bake::paper2006()) {
-            if (row.number_or("theta_l_deg", at.degrees) != at.degrees) {
+        for (double degrees = 0; degrees <= 90; degrees += 10) {
+            if (row.number_or("theta_l_deg", degrees) != degrees) {
                 continue;
             }
-            const ColumnModel& m = at.model;
+            const ColumnModel m = bake::paper2006_at(degrees);
             const std::map<std::string, double> value = {
                 {"b", m.length / (1 + m.length)}, {"beta", m.beta}, {"c_per_m", m.decay},
                 {"kappa_c_per_m", m.extinction},  {"t", m.forward}, {"r", m.back}};
@@ -39,9 +39,6 @@ TEST(ColumnModelTest, HoldsThePrintedParametersOfThePaper) {
 }
 
 TEST(ColumnModelTest, ParametersBetweenAnglesAreLinear) {
-    for (const bake::ColumnModelAt& at : bake::paper2006()) {
-        EXPECT_NEAR(bake::paper2006_at(at.degrees).beta, at.model.beta, 1e-12);
-    }
     const ColumnModel between = bake::paper2006_at(72.5);
     EXPECT_NEAR(between.back, 0.75 * 0.17 + 0.25 * 0.3554, 1e-12);
     EXPECT_NEAR(between.decay, 0.75 * 0.0133 + 0.25 * 0.028, 1e-12);
@@ -120,22 +117,23 @@ TEST(ColumnModelTest, ThickColumnsApproachTheirLimits) {
 }
 
 TEST(ColumnModelTest, SharesAreNeverNegativeAndAddUpToOne) {
-    for (const bake::ColumnModelAt& at : bake::paper2006()) {
-        const double cosine = std::max(1e-6, cosine_of_degrees(at.degrees));
+    for (double degrees = 0; degrees <= 90; degrees += 10) {
+        const double cosine = std::max(1e-6, cosine_of_degrees(degrees));
         for (const double thickness : {0.0, 1e-6, 1.0, 20.0, 300.0, 1e5}) {
             const double direct = std::exp(-0.0226 * thickness / cosine);
-            const OrderShares shares = eval_column_model(at.model, thickness, direct);
+            const OrderShares shares =
+                eval_column_model(bake::paper2006_at(degrees), thickness, direct);
             double sum = 0;
             for (int n = 0; n < 4; ++n) {
                 EXPECT_GE(shares.transmitted[n], 0);
                 EXPECT_GE(shares.reflected[n], 0);
                 sum += shares.transmitted[n] + shares.reflected[n];
             }
-            EXPECT_NEAR(sum, 1, 1e-12) << at.degrees << " " << thickness;
+            EXPECT_NEAR(sum, 1, 1e-12) << degrees << " " << thickness;
             EXPECT_EQ(shares.transmitted[0], direct);
         }
     }
-    EXPECT_EQ(eval_column_model(bake::paper2006()[0].model, 0, 1).transmitted[0], 1);
+    EXPECT_EQ(eval_column_model(bake::paper2006_at(0), 0, 1).transmitted[0], 1);
 }
 
 TEST(ColumnModelTest, FitOfAnyPhaseFunctionIsNearItsSlabs) {

@@ -105,26 +105,19 @@ TEST(PaperSlab, MediumWithoutItsPeakIsThatOfTheTable) {
 
 TEST(PaperSlab, SharesByOrderAreThoseOfTheTable) {
     OPALINE_CLOUD_ROWS(rows, "slab");
-    double squares = 0, largest = 0;
-    int photons = 0;
+    Deviations photons;
     for (const CloudRow& row : rows) {
         const double share = share_of(solved(row), row.text("quantity"), row.text("order"));
         if (row.text("method") != "monte_carlo_1sigma") {
             EXPECT_NEAR(share, row.value(), row.error()) << row.name();
         } else if (row.error() > 0) {
-            const double deviation = (share - row.value()) / row.error();
-            squares += deviation * deviation;
-            largest = std::max(largest, std::abs(deviation));
-            ++photons;
+            photons.add(share, row.error(), row.value());
         } else {  // no photon of many thousands left so, or all did
             EXPECT_NEAR(share, row.value(), 1e-4) << row.name();
         }
     }
-    if (photons > 0) {
-        const double rms = std::sqrt(squares / photons);
-        EXPECT_GT(rms, 0.8);
-        EXPECT_LT(rms, 1.2);
-        EXPECT_LT(largest, 4.5);
+    if (photons.count > 0) {
+        photons.expect_normal(1);
     }
 }
 

@@ -1,11 +1,15 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/phase_series.h"
+#include "bake/slab/slab_walk.h"
 #include "bake/slab/solve_slab.h"
 
 namespace opaline::tests {
@@ -22,6 +26,30 @@ inline bake::SlabSolution solve_one(const bake::SlabMedium& medium, double depth
                                     unsigned orders = 0, int streams = 48) {
     return solve_slab(medium, {depth, 0, {cosine}, streams, orders}).front();
 }
+
+/// Of estimates from their true values, in standard errors.
+struct Deviations {
+    double squares = 0, largest = 0;
+    int count = 0;
+
+    void add(double share, double standard_error, double truth) {
+        if (standard_error > 0) {
+            const double deviation = (share - truth) / standard_error;
+            squares += deviation * deviation;
+            largest = std::max(largest, std::abs(deviation));
+            ++count;
+        }
+    }
+    void add(const bake::SlabEstimate& estimate, double truth) {
+        add(estimate.share, estimate.standard_error, truth);
+    }
+    void expect_normal(int least) const {
+        EXPECT_GE(count, least);
+        EXPECT_GT(std::sqrt(squares / count), 0.8);
+        EXPECT_LT(std::sqrt(squares / count), 1.2);
+        EXPECT_LT(largest, 4.5);
+    }
+};
 
 /// The integral of f over [from, to] by Gauss-Legendre rules on even pieces.
 template <class Function>

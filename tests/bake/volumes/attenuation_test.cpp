@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "bake/volumes/add_scattered.h"
+#include "tests/bake/scattering/phase_support.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {
@@ -38,10 +39,7 @@ TEST(Attenuation, LightBetweenNodesHasTheMeanOfTheirDepths) {
     DepthTable table = make_depth_table(2, cells.size(), 1);
     set_depths(table, 0, 0, std::vector<float>(cells.size(), 0.5f));
     set_depths(table, 1, 0, std::vector<float>(cells.size(), 0.1f));
-    formats::PhaseFunction forward;
-    forward.type = formats::PhaseFunction::Type::henyey_greenstein;
-    forward.g = 0.4f;
-    const ScaledPhase phase = scale_phase(forward);
+    const ScaledPhase phase = scale_phase(tests::hg(0.4));
     ScatteredLight light;
     light.depth.fill(table.codes(0, 0));
     light.depth[5] = table.codes(1, 0);

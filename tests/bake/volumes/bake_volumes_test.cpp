@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 
@@ -10,18 +11,6 @@
 
 namespace opaline::bake {
 namespace {
-
-formats::Volumes bake(const formats::Scene& scene, const RayScene& rays, const Knobs& knobs,
-                      unsigned threads = 0) {
-    const VolumePlan plan = plan_volumes(scene, knobs);
-    StageLog log;
-    Context context;
-    context.threads = threads;
-    auto volumes = bake_volumes({scene, rays, plan.layouts, knobs}, context, log);
-    EXPECT_TRUE(volumes.has_value());
-    EXPECT_EQ(log.size(), 2u);
-    return std::move(*volumes);
-}
 
 Knobs coarse_knobs() {
     Knobs knobs = tests::knobs_for(Quality::draft);
@@ -51,9 +40,9 @@ TEST(BakeVolumes, PathsAndWalksFindLightThatDiffersByTheErrorOfTheModel) {
         tests::scene_of(tests::make_volume(tests::make_ball_grid(1, 0.2), 2.5f, 0.9f, 0.6f));
     Knobs walked = knobs_by(VolumeMethod::walks);
     walked.set(kVolumeWalks, 500);
-    const std::vector<double> walks = scattered_often(bake(scene, tests::empty_space(), walked));
-    const std::vector<double> paths = scattered_often(
-        bake(scene, tests::empty_space(), knobs_by(VolumeMethod::path_integration)));
+    const std::vector<double> walks = scattered_often(tests::bake_volumes_of(scene, walked));
+    const std::vector<double> paths =
+        scattered_often(tests::bake_volumes_of(scene, knobs_by(VolumeMethod::path_integration)));
     ASSERT_EQ(paths.size(), walks.size());
     double by_walks = 0, by_paths = 0, apart = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -88,35 +77,18 @@ TEST(BakeVolumes, AMethodThatThePlanLeavesOpenIsMeasuredAndTold) {
 TEST(BakeVolumes, DensityIsKeptToAnEvenStepOfTheBrick) {
     const formats::Scene scene =
         tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 0.9f, 0.4f));
-    const formats::Volumes volumes = bake(scene, tests::empty_space(), coarse_knobs());
+    const formats::Volumes volumes = tests::bake_volumes_of(scene, coarse_knobs());
     const formats::VolumeRecord& record = volumes.records.at(0);
     const formats::SparseGrid<float>& grid = scene.volumes[0].density;
-    std::size_t found = 0;
-    for (std::size_t cell = 0; cell < volumes.table.size(); ++cell) {
-        if (volumes.table[cell] == formats::kNoBrick) {
-            continue;
-        }
-        const auto c = static_cast<std::uint32_t>(cell);
-        const glm::ivec3 brick =
-            glm::ivec3(record.first_brick[0], record.first_brick[1], record.first_brick[2]) +
-            glm::ivec3(c % record.extent[0], c / record.extent[0] % record.extent[1],
-                       c / record.extent[0] / record.extent[1]);
-        const float scale = volumes.density_scale[volumes.table[cell]];
-        for (int i = 0; i < 512; ++i) {
-            const glm::ivec3 voxel = 8 * brick + glm::ivec3(i % 8, i / 8 % 8, i / 64);
-            const float kept =
-                scale *
-                static_cast<float>(
-                    volumes.density[512 * volumes.table[cell] + static_cast<std::size_t>(i)]);
+    std::ptrdiff_t found = 0;
+    tests::for_each_kept_voxel(
+        volumes, record, [&](glm::ivec3 voxel, std::uint32_t brick, std::size_t i) {
+            const float scale = volumes.density_scale[brick];
+            const float kept = scale * static_cast<float>(volumes.density[512 * brick + i]);
             EXPECT_NEAR(kept, grid.at(voxel), 0.51 * static_cast<double>(scale) + 1e-12);
             found += grid.at(voxel) > 0 ? 1 : 0;
-        }
-    }
-    std::size_t there = 0;
-    for (const float value : grid.value) {
-        there += value > 0 ? 1 : 0;
-    }
-    EXPECT_EQ(found, there);
+        });
+    EXPECT_EQ(found, std::ranges::count_if(grid.value, [](float v) { return v > 0; }));
 }
 
 TEST(BakeVolumes, ASurfaceHidesTheLightBehindIt) {
@@ -132,8 +104,8 @@ TEST(BakeVolumes, ASurfaceHidesTheLightBehindIt) {
     const auto rays = RayScene::build(scene, 1);
     ASSERT_TRUE(rays.has_value());
     const Knobs knobs = coarse_knobs();
-    const formats::Volumes below = bake(scene, *rays, knobs);
-    const formats::Volumes open = bake(scene, tests::empty_space(), knobs);
+    const formats::Volumes below = tests::bake_volumes_of(scene, *rays, knobs);
+    const formats::Volumes open = tests::bake_volumes_of(scene, knobs);
     const formats::VolumeRecord& record = open.records.at(0);
     double shares = 0;
     for (std::uint32_t node = 0; node < record.node_count; ++node) {
@@ -146,7 +118,7 @@ TEST(BakeVolumes, ASurfaceHidesTheLightBehindIt) {
 TEST(BakeVolumes, AVolumeThatOnlyAbsorbsHasDensityAndNoNodes) {
     const formats::Scene scene =
         tests::scene_of(tests::make_volume(tests::make_blob(0.4, 0.1), 3, 0, 0));
-    const formats::Volumes volumes = bake(scene, tests::empty_space(), coarse_knobs());
+    const formats::Volumes volumes = tests::bake_volumes_of(scene, coarse_knobs());
     ASSERT_EQ(volumes.records.size(), 1u);
     EXPECT_EQ(volumes.records[0].node_count, 0u);
     EXPECT_EQ(volumes.records[0].single_terms, 0u);

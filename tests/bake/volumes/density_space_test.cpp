@@ -38,9 +38,7 @@ TEST(DensitySpace, ABeamThroughAGaussianBlobHasItsOpticalDepthHoweverTheGridIsTu
 TEST(DensitySpace, FlightsSurviveAsBeerAndLambertSay) {
     const formats::Scene scene = scene_of(make_volume(make_blob(0.5, 0.05), 1.5f, 1, 0));
     const DensitySpace space = make_density_space(scene);
-    std::mt19937 engine(1);
-    std::uniform_real_distribution<float> uniform(0, 1);
-    const auto random = [&] { return std::min(uniform(engine), 0x1.fffffep-1f); };
+    tests::UnitNumbers random(1);
     const glm::vec3 from(-3, 0.2f, 0.1f), along(1, 0, 0);
     constexpr int kFlights = 20000;
     int through = 0;
@@ -59,9 +57,7 @@ TEST(DensitySpace, TwoVolumesAtOnePlaceAreOneOfBothDensities) {
     const DensitySpace two = make_density_space(twice), one = make_density_space(dense);
     const glm::vec3 from(-3, 0.1f, 0), along(1, 0, 0);
     EXPECT_NEAR(optical_depth(two, from, along)[0], optical_depth(one, from, along)[0], 1e-5);
-    std::mt19937 engine(2);
-    std::uniform_real_distribution<float> uniform(0, 1);
-    const auto random = [&] { return std::min(uniform(engine), 0x1.fffffep-1f); };
+    tests::UnitNumbers random(2);
     double mean[2] = {};
     constexpr int kFlights = 20000;
     for (int i = 0; i < kFlights; ++i) {
@@ -106,17 +102,13 @@ TEST(DensitySpace, FlightsThroughEvenDensityAreThoseOfTheGridWithFewerNumbers) {
     double mean[2] = {}, drawn[2] = {};
     constexpr int kFlights = 20000;
     for (const std::size_t is_rippled : {0u, 1u}) {
-        std::mt19937 engine(6);
-        std::uniform_real_distribution<float> uniform(0, 1);
-        const auto random = [&] {
-            ++drawn[is_rippled];
-            return std::min(uniform(engine), 0x1.fffffep-1f);
-        };
+        tests::UnitNumbers random(6);
         for (int i = 0; i < kFlights; ++i) {
             const Collision hit = sample_flight(is_rippled != 0 ? uneven : even, 0, glm::vec3(0),
                                                 glm::vec3(0.6f, 0, 0.8f), 1000, random);
             mean[is_rippled] += hit.happens ? static_cast<double>(hit.distance) : 0;
         }
+        drawn[is_rippled] = random.drawn;
     }
     EXPECT_NEAR(mean[0] / kFlights, mean[1] / kFlights, 4 * 12 / std::sqrt(kFlights));
     EXPECT_LT(drawn[0], 0.8 * drawn[1]);
@@ -160,16 +152,10 @@ TEST(DensitySpace, RaysAlongAxesAndFromFacesEndWhereTheGridDoes) {
 TEST(DensitySpace, MediaOfAMillionMeanFreePathsAVoxelEndFlightsAtOnce) {
     const formats::Scene scene = scene_of(make_volume(make_blob(0.3, 0.07), 1e9f, 1, 0));
     const DensitySpace space = make_density_space(scene);
-    int draws = 0;
-    std::mt19937 engine(4);
-    std::uniform_real_distribution<float> uniform(0, 1);
-    const auto random = [&] {
-        ++draws;
-        return std::min(uniform(engine), 0x1.fffffep-1f);
-    };
+    tests::UnitNumbers random(4);
     const Collision hit = sample_flight(space, 0, {-3, 0, 0}, {1, 0, 0}, 10, random);
     EXPECT_TRUE(hit.happens);
-    EXPECT_LT(draws, 5000);
+    EXPECT_LT(random.drawn, 5000);
 }
 
 }  // namespace

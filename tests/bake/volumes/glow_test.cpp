@@ -97,30 +97,21 @@ TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
     ASSERT_EQ(volumes.glow.record.size(), 1u);
     const formats::GlowRecord& glow = volumes.glow.record[0];
     EXPECT_EQ(glow.terms, 0u) << "nothing is scattered";
-    std::size_t found = 0;
-    for (std::uint32_t cell = 0; cell < volumes.table.size(); ++cell) {
-        const auto at = std::ranges::find(volumes.glow.brick, volumes.table[cell]);
-        if (volumes.table[cell] == formats::kNoBrick || at == volumes.glow.brick.end()) {
-            continue;
-        }
-        const glm::ivec3 brick =
-            glm::ivec3(record.first_brick[0], record.first_brick[1], record.first_brick[2]) +
-            glm::ivec3(cell % record.extent[0], cell / record.extent[0] % record.extent[1],
-                       cell / record.extent[0] / record.extent[1]);
-        const auto first = static_cast<std::size_t>(at - volumes.glow.brick.begin()) * 512;
-        for (int i = 0; i < 512; ++i) {
-            const glm::vec3 truth =
-                volume.emission.at(8 * brick + glm::ivec3(i % 8, i / 8 % 8, i / 64));
+    std::ptrdiff_t found = 0;
+    tests::for_each_kept_voxel(
+        volumes, record, [&](glm::ivec3 voxel, std::uint32_t brick, std::size_t i) {
+            const auto at = std::ranges::find(volumes.glow.brick, brick);
+            if (at == volumes.glow.brick.end()) return;
+            const auto first = static_cast<std::size_t>(at - volumes.glow.brick.begin()) * 512;
+            const glm::vec3 truth = volume.emission.at(voxel);
             const formats::Rgb kept =
-                glow.code_scale *
-                formats::unpack_shared(volumes.glow.code[first + static_cast<std::size_t>(i)]);
+                glow.code_scale * formats::unpack_shared(volumes.glow.code[first + i]);
             EXPECT_NEAR(kept.r, truth.x, 0.002f * truth.x + 1e-7f);
             EXPECT_NEAR(kept.b, truth.z, 0.002f * truth.x + 1e-7f);
             found += truth != glm::vec3(0) ? 1 : 0;
-        }
-    }
-    EXPECT_EQ(found, static_cast<std::size_t>(std::ranges::count_if(
-                         volume.emission.value, [](glm::vec3 v) { return v != glm::vec3(0); })));
+        });
+    EXPECT_EQ(found, std::ranges::count_if(volume.emission.value,
+                                           [](glm::vec3 v) { return v != glm::vec3(0); }));
 }
 
 TEST(PlanGlow, LightUnderTheBudgetIsLeftOutAndWhatIsLeftOutIsDarker) {

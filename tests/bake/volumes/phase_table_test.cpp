@@ -9,6 +9,7 @@
 #include "bake/scattering/phase.h"
 #include "bake/volumes/scaled_phase.h"
 #include "formats/opal/phase_table.h"
+#include "tests/bake/scattering/phase_support.h"
 #include "tests/support/cut_phase.h"
 
 namespace opaline::bake {
@@ -17,13 +18,6 @@ namespace {
 using formats::eval_phase_table;
 using formats::integrate_phase_table;
 using formats::kPhaseEntries;
-
-formats::PhaseFunction henyey_greenstein_function(float g) {
-    formats::PhaseFunction phase;
-    phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-    phase.g = g;
-    return phase;
-}
 
 // The largest relative error over all angles, every 0.02 degrees.
 template <class Exact>
@@ -39,7 +33,7 @@ double worst_error(const std::vector<float>& table, Exact exact) {
 
 TEST(PhaseTableOfVolumes, IntegratesToOne) {
     for (const float g : {-0.95f, -0.5f, 0.0f, 0.3f, 0.5f, 0.75f, 0.85f, 0.95f, 0.99f}) {
-        const formats::PhaseFunction phase = henyey_greenstein_function(g);
+        const formats::PhaseFunction phase = tests::hg(g);
         const std::vector<float> table = tabulate_phase(phase, scale_phase(phase).peak);
         ASSERT_EQ(table.size(), kPhaseEntries);
         EXPECT_NEAR(integrate_phase_table(table), 1, 1e-6) << g;
@@ -50,7 +44,7 @@ TEST(PhaseTableOfVolumes, IntegratesToOne) {
 // The share g^5 is the peak that the bake takes out; what is above the cut must be just that.
 TEST(PhaseTableOfVolumes, IsHenyeyGreensteinBelowTheCutThatLeavesThePeak) {
     for (const double g : {0.5, 0.75, 0.85, 0.95}) {
-        const formats::PhaseFunction phase = henyey_greenstein_function(static_cast<float>(g));
+        const formats::PhaseFunction phase = tests::hg(g);
         const double peak = scale_phase(phase).peak;
         const tests::CutPhase exact = tests::make_cut_phase(g);
         ASSERT_NEAR(peak, exact.peak, 1e-6);
@@ -70,16 +64,14 @@ TEST(PhaseTableOfVolumes, IsHenyeyGreensteinBelowTheCutThatLeavesThePeak) {
 
 TEST(PhaseTableOfVolumes, IsThePhaseFunctionItselfWithoutAPeak) {
     for (const double g : {-0.85, -0.4, 0.3}) {
-        const formats::PhaseFunction phase = henyey_greenstein_function(static_cast<float>(g));
+        const formats::PhaseFunction phase = tests::hg(g);
         ASSERT_EQ(scale_phase(phase).peak, 0);
         EXPECT_LT(worst_error(tabulate_phase(phase, 0),
                               [&](double c) { return henyey_greenstein(c, phase.g); }),
                   0.006)
             << g;
     }
-    formats::PhaseFunction rayleigh;
-    rayleigh.type = formats::PhaseFunction::Type::rayleigh;
-    EXPECT_LT(worst_error(tabulate_phase(rayleigh, 0),
+    EXPECT_LT(worst_error(tabulate_phase(tests::rayleigh(), 0),
                           [](double c) { return 3 * (1 + c * c) / (16 * std::numbers::pi); }),
               2e-4);
     EXPECT_LT(worst_error(tabulate_phase({}, 0), [](double) { return 0.25 / std::numbers::pi; }),
@@ -89,18 +81,13 @@ TEST(PhaseTableOfVolumes, IsThePhaseFunctionItselfWithoutAPeak) {
 // A ring 0.15 degrees wide, much less than a step, and as wide a forward peak.
 TEST(PhaseTableOfVolumes, NarrowPeaksKeepTheirLight) {
     for (const double angle : {0.0, 42.3, 137.9}) {
-        formats::PhaseFunction phase;
-        phase.type = formats::PhaseFunction::Type::tabulated;
         const auto cosine = [&](double degrees) {
             return static_cast<float>(std::cos((angle + degrees) * std::numbers::pi / 180));
         };
-        if (angle > 0) {
-            phase.cosine = {-1, cosine(0.15), cosine(0.075), cosine(0), 1};
-            phase.value = {0, 0, 1, 0, 0};
-        } else {
-            phase.cosine = {-1, cosine(0.15), 1};
-            phase.value = {0, 0, 1};
-        }
+        const formats::PhaseFunction phase =
+            angle > 0
+                ? tests::table_of({-1, cosine(0.15), cosine(0.075), cosine(0), 1}, {0, 0, 1, 0, 0})
+                : tests::table_of({-1, cosine(0.15), 1}, {0, 0, 1});
         const std::vector<float> table = tabulate_phase(phase, 0);
         EXPECT_NEAR(integrate_phase_table(table), 1, 1e-6);
         const double coordinate = static_cast<double>(formats::phase_coordinate(cosine(0.075)));

@@ -23,43 +23,37 @@ Knobs preview() {
     return tests::knobs_for(Quality::preview);
 }
 
-TEST(PlanVolumes, AnOpticalDepthUnderTheBudgetIsNothing) {
-    const VolumePlan thin = plan_of(1e-4f, 1, 0, preview());
-    EXPECT_TRUE(thin.layouts.empty());
-    EXPECT_FALSE(thin.entries.at(0).on);
-    EXPECT_LT(thin.entries[0].bound, 1.0 / 512);
-    const VolumePlan seen = plan_of(1e-2f, 1, 0, preview());
-    EXPECT_EQ(seen.layouts.size(), 1u);
-    EXPECT_TRUE(seen.entries.at(0).on);
-}
-
-TEST(PlanVolumes, ThinVolumesScatterOnceAndDenseOnesMoreOften) {
+TEST(PlanVolumes, LightUnderTheBudgetIsLeftOutAndForwardScatteringTakesMoreTerms) {
+    constexpr struct {
+        const char* name;
+        float sigma_t, albedo, g;
+        bool once, often;
+        std::uint32_t once_terms, least_often_terms, most_often_terms;
+    } kRows[] = {{"thin", 1e-4f, 1, 0, false, false, 0, 0, 0},
+                 {"scatters once", 3e-3f, 1, 0, true, false, 1, 0, 0},
+                 {"dense", 3, 1, 0, true, true, 1, 1, 1},
+                 {"black", 3, 0, 0.5f, false, false, 0, 0, 0},
+                 {"nearly even", 3, 1, 0.05f, true, true, 4, 1, 4},
+                 {"forward", 3, 1, 0.85f, true, true, 25, 2, 24}};
+    for (const auto& row : kRows) {
+        SCOPED_TRACE(row.name);
+        const VolumePlan plan = plan_of(row.sigma_t, row.albedo, row.g, preview());
+        EXPECT_EQ(plan.entries.at(0).on, row.once);
+        EXPECT_EQ(plan.entries.at(1).on, row.often);
+        const bool absorbs = row.albedo == 0;
+        ASSERT_EQ(plan.layouts.size(), row.once || absorbs ? 1u : 0u);
+        EXPECT_EQ(plan.entries[0].reason.find("absorbs") != std::string::npos, absorbs);
+        if (!row.once) {
+            EXPECT_LT(plan.entries[0].bound, 1.0 / 512);
+            EXPECT_TRUE(plan.layouts.empty() || !plan.layouts[0].has_nodes());
+            continue;
+        }
+        EXPECT_EQ(plan.layouts[0].once_terms, row.once_terms);
+        EXPECT_GE(plan.layouts[0].often_terms, row.least_often_terms);
+        EXPECT_LE(plan.layouts[0].often_terms, row.most_often_terms);
+    }
     const VolumePlan thin = plan_of(3e-3f, 1, 0, preview());
-    EXPECT_TRUE(thin.entries.at(0).on);
-    EXPECT_FALSE(thin.entries.at(1).on);
-    EXPECT_EQ(thin.layouts.at(0).often_terms, 0u);
     EXPECT_NEAR(thin.entries[1].bound, thin.entries[0].bound * thin.entries[0].bound, 1e-12);
-    const VolumePlan dense = plan_of(3, 1, 0, preview());
-    EXPECT_TRUE(dense.entries.at(1).on);
-    EXPECT_EQ(dense.layouts.at(0).often_terms, 1u);
-}
-
-TEST(PlanVolumes, WithoutAlbedoThereIsAbsorptionAlone) {
-    const VolumePlan black = plan_of(3, 0, 0.5f, preview());
-    EXPECT_FALSE(black.entries.at(0).on);
-    EXPECT_FALSE(black.entries.at(1).on);
-    EXPECT_NE(black.entries[0].reason.find("absorbs"), std::string::npos);
-    ASSERT_EQ(black.layouts.size(), 1u);
-    EXPECT_FALSE(black.layouts[0].has_nodes());
-}
-
-TEST(PlanVolumes, IsotropicScatteringHasOneTermAndForwardScatteringMore) {
-    EXPECT_EQ(plan_of(3, 1, 0, preview()).layouts.at(0).once_terms, 1u);
-    EXPECT_EQ(plan_of(3, 1, 0.05f, preview()).layouts.at(0).once_terms, 4u);
-    const VolumePlan forward = plan_of(3, 1, 0.85f, preview());
-    EXPECT_EQ(forward.layouts.at(0).once_terms, 25u);
-    EXPECT_GT(forward.layouts[0].often_terms, 1u);
-    EXPECT_LT(forward.layouts[0].often_terms, 25u);
 }
 
 TEST(PlanVolumes, NamedEffectsAreAllThatIsBaked) {

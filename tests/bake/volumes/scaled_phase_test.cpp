@@ -7,16 +7,10 @@
 #include <vector>
 
 #include "bake/volumes/degree_rate.h"
+#include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::bake {
 namespace {
-
-formats::PhaseFunction henyey_greenstein(float g) {
-    formats::PhaseFunction phase;
-    phase.type = formats::PhaseFunction::Type::henyey_greenstein;
-    phase.g = g;
-    return phase;
-}
 
 TEST(ScaledPhase, IsotropicScatteringNeedsOneTermAndHasNoPeak) {
     const ScaledPhase phase = scale_phase({});
@@ -27,9 +21,7 @@ TEST(ScaledPhase, IsotropicScatteringNeedsOneTermAndHasNoPeak) {
 }
 
 TEST(ScaledPhase, RayleighScatteringIsKeptToItsLastDegree) {
-    formats::PhaseFunction rayleigh;
-    rayleigh.type = formats::PhaseFunction::Type::rayleigh;
-    const ScaledPhase phase = scale_phase(rayleigh);
+    const ScaledPhase phase = scale_phase(tests::rayleigh());
     EXPECT_EQ(phase.degree, 2u);
     for (const float c : {-1.0f, -0.4f, 0.0f, 0.7f, 1.0f}) {
         EXPECT_NEAR(eval_scaled(phase, c), 3 * (1 + c * c) / (16 * std::numbers::pi_v<float>),
@@ -39,7 +31,7 @@ TEST(ScaledPhase, RayleighScatteringIsKeptToItsLastDegree) {
 
 TEST(ScaledPhase, PeakAndRestTogetherHaveTheMomentsOfTheWhole) {
     for (const float g : {0.3f, 0.5f, 0.75f, 0.85f, 0.95f}) {
-        const ScaledPhase phase = scale_phase(henyey_greenstein(g));
+        const ScaledPhase phase = scale_phase(tests::hg(g));
         for (unsigned l = 0; l <= phase.degree; ++l) {
             EXPECT_NEAR(phase.peak + (1 - phase.peak) * phase.lambda[l],
                         std::pow(static_cast<double>(g), l), 1e-9)
@@ -50,7 +42,7 @@ TEST(ScaledPhase, PeakAndRestTogetherHaveTheMomentsOfTheWhole) {
 
 TEST(ScaledPhase, ADrawnCosineHasTheMomentsOfTheRest) {
     for (const float g : {-0.6f, 0.0f, 0.5f, 0.9f}) {
-        const ScaledPhase phase = scale_phase(henyey_greenstein(g));
+        const ScaledPhase phase = scale_phase(tests::hg(g));
         constexpr int kDraws = 20000;
         double sum = 0, first = 0, largest = 0;
         for (int i = 0; i < kDraws; ++i) {
@@ -95,7 +87,7 @@ double square_beyond(const ScaledPhase& phase, unsigned degree) {
 
 TEST(RateOfDegree, IsThatOfWhatRowsLackOfThePhaseFunction) {
     for (const float g : {-0.6f, 0.3f, 0.5f, 0.85f}) {
-        const ScaledPhase phase = scale_phase(henyey_greenstein(g));
+        const ScaledPhase phase = scale_phase(tests::hg(g));
         const double all = square_beyond(phase, 0), last = square_beyond(phase, phase.degree - 1);
         EXPECT_NEAR(rate_of_degree(g), std::log(last / all) / 2 / (phase.degree - 1), 2e-3) << g;
     }

@@ -123,18 +123,5 @@ TEST(ShareDetails, NodesThatAreSeenKeepMoreThanThoseAtTheEdge) {
     EXPECT_GT(details[0] + details[1], 0.9 * (nodes[0] + nodes[1]) * (96 - 6 * record.terms()));
 }
 
-TEST(ShareDetails, DensitiesAroundNodesAreThoseOfTheirTents) {
-    formats::SparseGrid<float> even = tests::make_blob(0.5, 1.0 / 6);
-    for (float& value : even.value)
-        value = value > 0 ? 2.0f : 0.0f;
-    const NodeLattice lattice = make_node_lattice(even, 2);
-    const std::vector<float> density = node_densities(even, lattice);
-    EXPECT_EQ(std::ranges::max(density), 1);
-    EXPECT_GE(std::ranges::min(density), 0);
-    EXPECT_LT(std::ranges::min(density), 0.3f);
-    formats::SparseRow half{1, {}, {}, std::vector<float>(formats::kCubeFaces, 0.5f * kEdge)};
-    EXPECT_NEAR(mean_visibility(half, kEdge), 0.5, 1e-6);
-}
-
 }  // namespace
 }  // namespace opaline::bake

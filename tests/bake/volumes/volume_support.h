@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <random>
@@ -50,6 +51,37 @@ inline formats::Volumes bake_volumes_of(const formats::Scene& scene, const bake:
 inline formats::Volumes bake_volumes_of(const formats::Scene& scene, const bake::Knobs& knobs,
                                         unsigned threads = 0) {
     return bake_volumes_of(scene, empty_space(), knobs, threads);
+}
+
+/// Even numbers in [0, 1) as walks draw them; counts them.
+class UnitNumbers {
+  public:
+    explicit UnitNumbers(unsigned seed) : engine_(seed) {}
+    float operator()() {
+        ++drawn;
+        return std::min(uniform_(engine_), 0x1.fffffep-1f);
+    }
+    int drawn = 0;
+
+  private:
+    std::mt19937 engine_;
+    std::uniform_real_distribution<float> uniform_{0, 1};
+};
+
+/// Calls visit(voxel, brick, i) for voxels i < 512 of all bricks of a record, `voxel` on the grid.
+template <class Visit>
+void for_each_kept_voxel(const formats::Volumes& volumes, const formats::VolumeRecord& record,
+                         Visit&& visit) {
+    const glm::ivec3 first(record.first_brick[0], record.first_brick[1], record.first_brick[2]);
+    for (std::uint32_t cell = 0; cell < volumes.table.size(); ++cell) {
+        if (volumes.table[cell] == formats::kNoBrick) continue;
+        const glm::ivec3 brick(cell % record.extent[0], cell / record.extent[0] % record.extent[1],
+                               cell / record.extent[0] / record.extent[1]);
+        for (int i = 0; i < 512; ++i) {
+            visit(8 * (first + brick) + glm::ivec3(i % 8, i / 8 % 8, i / 64), volumes.table[cell],
+                  static_cast<std::size_t>(i));
+        }
+    }
 }
 
 /// The integral of one band of a row over all directions.

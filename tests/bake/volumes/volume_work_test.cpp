@@ -5,11 +5,11 @@
 #include <cmath>
 #include <string>
 
-#include "bake/volumes/count_walk.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/light_cells.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/walk_parts.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {
@@ -60,8 +60,9 @@ TEST(VolumeWork, FlightsAreThoseOfAllNodesWithinAFactorOfTwo) {
                 for (const glm::ivec3 node : make_node_lattice(volume.density, 4).node) {
                     const glm::vec3 at(volume.density.to_scene * glm::dvec4(glm::dvec3(node), 1));
                     for (std::uint64_t w = 0; w < kWalks; ++w) {
-                        CostRandom random(1000000 +
-                                          kWalks * static_cast<std::uint64_t>(all.flights) + w);
+                        FlightRandom random(
+                            0, RandomStage::volume_costs,
+                            1000000 + kWalks * static_cast<std::uint64_t>(all.flights) + w);
                         const WalkCount one = count_walk(space, at, random);
                         all.flights += one.flights;
                         all.collisions += one.collisions;
@@ -85,7 +86,7 @@ TEST(VolumeWork, WalksWithoutAWayOutCollideAsOftenAsRouletteLetsThem) {
     constexpr std::uint64_t kWalks = 4000;
     WalkCount sum;
     for (std::uint64_t w = 0; w < kWalks; ++w) {
-        CostRandom random(w);
+        FlightRandom random(0, RandomStage::volume_costs, w);
         const WalkCount one = count_walk(space, glm::vec3(0), random);
         sum.flights += one.flights;
         sum.collisions += one.collisions;
