@@ -10,7 +10,7 @@
 
 namespace opaline::runtime {
 
-/// Distant light as the lobes of glossy opaque surfaces sum it up (gloss.h), in the light's frame.
+/// Distant light as the lobes of glossy opaque surfaces sum it up (gloss_model.h), in the light's frame.
 /// The same light three times over: narrow lobes sample maps, wide ones sum cells; suns, too small
 /// for either, are added to both.
 struct GlossLight {

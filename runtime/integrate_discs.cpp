@@ -1,12 +1,14 @@
 #include "runtime/integrate_discs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
 #include "formats/opal/cubemap.h"
-#include "runtime/nearest_texels.h"
+#include "formats/opal/vec3.h"
 
 namespace opaline::runtime {
 namespace {
@@ -14,6 +16,36 @@ namespace {
 using formats::DistantDisc;
 using formats::Vec3;
 using std::numbers::pi;
+
+// A texel and its share of the flux of a small source.
+struct TexelShare {
+    std::uint32_t texel = 0;
+    double share = 0;
+};
+
+// The four texels of 6 n n whose centres are around a direction, with bilinear shares that add up
+// to 1; across the edges of faces too. Light of a small source projected like this is multiplied
+// with the transport interpolated at the source, not with that of the one texel it falls into: it
+// comes from where it is to second order in the texel's size, and moves evenly as it turns.
+std::array<TexelShare, 4> nearest_texels(std::uint32_t n, formats::Vec3 direction) {
+    const formats::CubePoint point = formats::cube_point(direction);
+    // Of the grid of centres: whole numbers are centres.
+    const double half = 0.5 * n;
+    const double x = (static_cast<double>(point.u) + 1) * half - 0.5;
+    const double y = (static_cast<double>(point.v) + 1) * half - 0.5;
+    const double left = std::floor(x), up = std::floor(y);
+    std::array<TexelShare, 4> shares;
+    for (int i = 0; i < 4; ++i) {
+        const double column = left + (i & 1), row = up + (i >> 1);
+        // A centre beyond the face's edge lies in the neighbouring face.
+        const formats::Vec3 centre =
+            formats::cube_position({point.face, static_cast<float>((column + 0.5) / half - 1),
+                                    static_cast<float>((row + 0.5) / half - 1)});
+        shares[static_cast<std::size_t>(i)] = {
+            formats::texel_index(n, centre), (1 - std::abs(x - column)) * (1 - std::abs(y - row))};
+    }
+    return shares;
+}
 
 // A frame whose third axis is the disc's direction.
 struct DiscFrame {

@@ -10,7 +10,7 @@ namespace opaline::runtime {
 
 /// Adds each disc's radiance integrated over each of the 6 n n texels, integral[3 j + band]
 /// [W m^-2]. The total, radiance * disc_solid_angle, is exact. Discs smaller than a texel are dealt
-/// out by 1024 points of equal solid angle, each to the texels around it (nearest_texels.h); larger
+/// out by 1024 points of equal solid angle, each to the texels around it (integrate_discs.h); larger
 /// ones by the covered share of each texel (exact
 /// inside, 32 x 32 points at the rim).
 void integrate_discs(std::span<const formats::DistantDisc> discs, std::uint32_t n,

@@ -9,7 +9,7 @@
 namespace opaline::runtime {
 
 /// Distant light that differs between the primitives of an asset, as it does beneath a cloud layer
-/// (clouds/light_points.h). A single light converts to it. Refers to its arrays.
+/// (clouds/part_environments.h). A single light converts to it. Refers to its arrays.
 struct PartLights {
     std::span<const LightVector> light;  ///< at least one, each of the asset's cube map size
     /// Of each primitive, an index into `light`; empty: all have the first.

@@ -6,9 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/model_lights.h"
+#include "bake/accuracy/check_model.h"
 #include "bake/accuracy/model_pairs.h"
-#include "bake/accuracy/model_receivers.h"
 #include "bake/reference/light_sampler.h"
 #include "bake/reference/reference_scene.h"
 #include "formats/opal/environment.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,12 +9,38 @@
 
 #include "bake/base/context.h"
 #include "bake/plan/effect.h"
+#include "bake/reference/reference_receivers.h"
+#include "bake/reference/reference_scene.h"
 #include "bake/reference/terms.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// `wanted` vertices of the scene, seen along their normals, of thin-walled surfaces every
+/// other one from behind, without those where bake and reference
+/// model different geometry: inside bodies, on sharp edges, less than three mean free paths above
+/// another surface inside their own body, on folds thinner than a mean free path that lie on their
+/// own body, or with triangles that turn more than 60 degrees from their normal.
+std::vector<ReferenceReceiver> choose_model_receivers(const ReferenceScene& scene,
+                                                      std::uint32_t wanted, std::uint64_t seed);
+
+/// The scenes with which surfaces of a file are compared. Volumes of a file dim light between
+/// surfaces, but scatter none of it.
+struct ModelScenes {
+    std::unique_ptr<const formats::Scene> facing;     ///< bodies face outward
+    std::unique_ptr<const formats::Scene> absorbing;  ///< null: there are no volumes
+    ReferenceScene whole;
+    /// With volumes that scatter nothing, of the extinction without their forward peaks, as files
+    /// have it. Nothing: `whole` holds.
+    std::optional<ReferenceScene> without_scattering;
+
+    const ReferenceScene& held() const { return without_scattering ? *without_scattering : whole; }
+};
+
+/// Errors: resource.
+formats::Result<ModelScenes> make_model_scenes(const formats::Scene& scene, unsigned threads);
 
 /// Difference of a finished file from the Monte Carlo reference (reference/): luminance along the
 /// normals of held-back receivers under the published test lights, relative to the RMS of the

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/model_lights.h"
 #include "bake/accuracy/model_pairs.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/reference/random_stream.h"

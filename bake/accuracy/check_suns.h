@@ -5,7 +5,6 @@
 #include <span>
 
 #include "bake/accuracy/check_model.h"
-#include "bake/accuracy/model_scenes.h"
 #include "bake/base/context.h"
 #include "bake/reference/path.h"
 #include "formats/opal/asset.h"

@@ -3,8 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "bake/accuracy/model_receivers.h"
-#include "bake/accuracy/model_scenes.h"
+#include "bake/accuracy/check_model.h"
 #include "bake/scene/orient_bodies.h"
 
 namespace opaline::bake {

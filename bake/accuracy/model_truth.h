@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bake/accuracy/check_model.h"
-#include "bake/accuracy/model_lights.h"
 #include "bake/accuracy/model_pairs.h"
 
 namespace opaline::bake {

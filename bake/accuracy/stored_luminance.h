@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "bake/accuracy/check_point.h"
 #include "bake/accuracy/measure_error.h"
+#include "bake/accuracy/surface_probes.h"
 #include "bake/plan/row_layout.h"
 #include "bake/truth/test_lights.h"
 #include "formats/opal/asset.h"

@@ -1,11 +1,18 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+
 #include <functional>
 
-#include "bake/cli/exit_codes.h"
-
 namespace opaline::cli {
+
+/// Exit codes (README.md of the project).
+inline constexpr int kExitSuccess = 0;
+inline constexpr int kExitNo = 1;  ///< the job ran and the answer is no
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitBadInput = 3;
+inline constexpr int kExitResource = 4;
+inline constexpr int kExitInterrupted = 130;
 
 /// The action of the chosen command, run after parsing; returns the exit code.
 using Job = std::function<int()>;

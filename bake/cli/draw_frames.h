@@ -8,7 +8,6 @@
 
 #include "bake/base/context.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/light_with_layers.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/terms.h"
 #include "runtime/emitter_light.h"

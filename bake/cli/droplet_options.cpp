@@ -7,10 +7,8 @@
 #include <utility>
 
 #include "bake/cli/interrupt.h"
-#include "bake/cli/memory_limit.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
-#include "bake/cli/printable.h"
 #include "bake/mie/mie_series.h"
 
 namespace opaline::cli {

@@ -8,7 +8,6 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/usage_errors.h"
 #include "bake/environment/builtin_environment.h"
-#include "bake/environment/rasterise.h"
 #include "bake/example/example_scenes.h"
 #include "formats/image/exr.h"
 

@@ -7,12 +7,10 @@
 #include <utility>
 
 #include "bake/cli/command.h"
-#include "bake/cli/emitter_brightness.h"
+#include "bake/cli/file_facts.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
-#include "bake/cli/layer_info.h"
 #include "bake/cli/messages.h"
-#include "bake/cli/volume_facts.h"
 #include "formats/opal/receiver_errors.h"
 #include "formats/opal/terms.h"
 

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
 #include "bake/cli/usage_errors.h"
 #include "bake/environment/builtin_environment.h"
@@ -16,8 +18,19 @@
 #include "formats/media/load_clouds.h"
 #include "formats/media/load_volumes.h"
 #include "formats/media/read_media.h"
+#include "runtime/picture/camera.h"
+#include "runtime/volumes/volume_bounds.h"
 
 namespace opaline::cli {
+namespace {
+
+formats::Vec3 centre_of(const formats::AssetView& view) {
+    const runtime::BoundingSphere sphere = runtime::bound_asset(view);
+    return {static_cast<float>(sphere.x), static_cast<float>(sphere.y),
+            static_cast<float>(sphere.z)};
+}
+
+}  // namespace
 
 using formats::ErrorKind;
 using formats::make_error;
@@ -244,6 +257,40 @@ formats::Vec3 parse_vec3(const std::string& option, const std::string& text) {
         at = next + 1;
     }
     return formats::Vec3{value[0], value[1], value[2]};
+}
+
+LightWithLayers light_layers_of(const formats::AssetView& view, const OpenedLight& above,
+                                double time, unsigned threads) {
+    LightWithLayers lit;
+    if (view.clouds.empty()) return lit;
+    const auto start = std::chrono::steady_clock::now();
+    lit.layers = runtime::light_layers(view.clouds, above.environment, above.rotation,
+                                       {.time = time, .threads = threads});
+    if (!view.primitives.empty() || !view.volumes.empty()) {
+        const runtime::LayerScene scene{*lit.layers, above.environment, above.rotation};
+        lit.parts = runtime::environments_of_parts(
+            scene, view, runtime::volume_corners(view.volumes), centre_of(view), threads);
+    }
+    lit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return lit;
+}
+
+PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& above, std::uint32_t n,
+                          unsigned threads) {
+    if (!layers.parts) {
+        return {{}, {runtime::project_environment(above.environment, n, above.rotation, threads)}};
+    }
+    PartVectors parts{layers.parts->points, {}};
+    for (const formats::Environment& environment : layers.parts->at_point) {
+        parts.vector.push_back(runtime::project_environment(environment, n, {}, threads));
+    }
+    return parts;
+}
+
+void add_time_option(CLI::App& command, double& time) {
+    command.add_option("--time", time, "move cloud layers by their wind times T [s]")
+        ->check(real_number(-1e9, 1e9))
+        ->option_text("T [0]");
 }
 
 }  // namespace opaline::cli

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "bake/calibration/learn_rates.h"
 #include "bake/calibration/rates_cache.h"
 
 namespace opaline::cli {

@@ -2,11 +2,70 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstdio>
+#include <iterator>
 
-#include "bake/cli/exit_codes.h"
+#include "bake/cli/command.h"
 
 namespace opaline::cli {
+namespace {
+
+struct Decoded {
+    char32_t code = 0;
+    std::size_t length = 0;  ///< bytes; 0: not UTF-8
+};
+
+// The first character. Refuses overlong forms, surrogates and everything above U+10FFFF.
+Decoded decode_utf8(std::string_view text) {
+    const auto lead = static_cast<unsigned char>(text[0]);
+    if (lead < 0x80) {
+        return {lead, 1};
+    }
+    const std::size_t length = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+    if (lead < 0xc2 || lead > 0xf4 || text.size() < length) {
+        return {};
+    }
+    char32_t code = lead & (0x7fu >> length);
+    for (std::size_t i = 1; i < length; ++i) {
+        const auto next = static_cast<unsigned char>(text[i]);
+        if ((next & 0xc0) != 0x80) {
+            return {};
+        }
+        code = code << 6 | (next & 0x3fu);
+    }
+    constexpr char32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};
+    const bool is_surrogate = code >= 0xd800 && code <= 0xdfff;
+    return code < kLeast[length] || is_surrogate || code > 0x10ffff ? Decoded{}
+                                                                    : Decoded{code, length};
+}
+
+// Changes what a terminal does or the order it shows text in, or is seen by nobody.
+bool is_hidden(char32_t code) {
+    struct Range {
+        char32_t first, last;
+    };
+    constexpr Range kHidden[] = {
+        {0x00, 0x1f},     {0x7f, 0x9f},       // C0, DEL, C1
+        {0xad, 0xad},     {0x61c, 0x61c},     // soft hyphen, Arabic letter mark
+        {0x180e, 0x180e}, {0x200b, 0x200b},   // zero-width
+        {0x200e, 0x200f}, {0x2028, 0x202e},   // marks, separators, embeddings, overrides
+        {0x2060, 0x206f}, {0xfeff, 0xfeff},   // isolates and other format characters
+        {0xfff9, 0xfffb}, {0xe0000, 0xe0fff}  // annotations, tags
+    };
+    return std::any_of(std::begin(kHidden), std::end(kHidden),
+                       [=](Range range) { return code >= range.first && code <= range.last; });
+}
+
+std::string escape(char32_t code) {
+    const auto number = static_cast<std::uint32_t>(code);
+    return number <= 0xff     ? fmt::format("\\x{:02x}", number)
+           : number <= 0xffff ? fmt::format("\\u{:04x}", number)
+                              : fmt::format("\\U{:08x}", number);
+}
+
+}  // namespace
 
 using formats::Diagnostic;
 using formats::ErrorKind;
@@ -100,6 +159,35 @@ std::string format_bytes(double bytes) {
         return fmt::format("{:.1f} MB", bytes * 1e-6);
     }
     return bytes >= 1e3 ? fmt::format("{:.1f} kB", bytes * 1e-3) : fmt::format("{} bytes", bytes);
+}
+
+std::string printable(std::string_view text) {
+    std::string safe;
+    while (!text.empty()) {
+        const Decoded next = decode_utf8(text);
+        const std::size_t length = std::max<std::size_t>(next.length, 1);
+        if (next.length == 0) {
+            safe += escape(static_cast<unsigned char>(text[0]));
+        } else if (is_hidden(next.code)) {
+            safe += escape(next.code);
+        } else {
+            safe += text.substr(0, length);
+        }
+        text.remove_prefix(length);
+    }
+    return safe;
+}
+
+std::string shorten(std::string_view text) {
+    constexpr std::size_t kMost = 40;
+    if (text.size() <= kMost) {
+        return printable(text);
+    }
+    std::size_t end = kMost;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
+        --end;  // not within a character
+    }
+    return printable(text.substr(0, end)) + "...";
 }
 
 }  // namespace opaline::cli

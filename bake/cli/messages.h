@@ -1,13 +1,21 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "bake/cli/printable.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {
+
+/// Text of unknown origin (file contents, paths, arguments) made safe for a terminal: control
+/// characters, bytes that are not UTF-8, and Unicode's invisible and direction-changing characters
+/// become visible escapes such as \x1b and \u202e.
+std::string printable(std::string_view text);
+
+/// The same, cut after about 40 characters.
+std::string shorten(std::string_view text);
 
 /// What the program says on stderr; set once, before the command runs.
 struct MessageOptions {

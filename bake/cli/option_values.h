@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,7 +9,25 @@
 #include <utility>
 #include <vector>
 
+#include "bake/pipeline/predict_memory.h"
+#include "formats/opal/result.h"
+
 namespace opaline::cli {
+
+/// `--memory-limit`; 0 where it is not given.
+void add_memory_option(CLI::App& command, std::uint64_t& limit);
+
+/// What this process may use [bytes]: the machine's memory, or what its control group allows, or
+/// what `ulimit -v` leaves to a program of that many threads.
+std::uint64_t available_memory(unsigned threads);
+
+/// Refuses what is predicted to need more than `limit`. Errors: resource, naming `file`.
+formats::Status check_memory(const std::string& file, const bake::MemoryPrediction& prediction,
+                             std::uint64_t limit);
+
+/// Whether that many threads (0: one per core) can be started. Asked first because TBB, which all
+/// stages run on, waits for ever for a thread that could not be. Errors: resource.
+formats::Status check_threads(unsigned threads);
 
 /// Checks of option values whose messages say what is accepted. CLI11's own checks let NaN pass,
 /// clamp integers, accept numbers for names, and print C++ containers.

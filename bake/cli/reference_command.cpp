@@ -2,37 +2,66 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
-#include "bake/cli/memory_limit.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
 #include "bake/cli/path_integration.h"
 #include "bake/cli/progress.h"
-#include "bake/cli/reference_checks.h"
 #include "bake/cli/reference_options.h"
 #include "bake/cli/scene_options.h"
-#include "bake/cli/stand_in.h"
 #include "bake/cli/write_picture.h"
 #include "bake/path_images/path_image.h"
 #include "bake/reference/path_filter.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
-#include "bake/reference/write_receivers.h"
 #include "formats/image/exr.h"
+#include "formats/opal/asset.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/terms.h"
+#include "formats/scene.h"
 
 namespace opaline::cli {
 namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
+
+// The scene's surfaces and volumes as far as a camera is placed by them (make_camera): positions
+// and triangles of surfaces, corners of volumes, in the world [m].
+formats::Asset make_stand_in(const formats::Scene& scene) {
+    formats::Asset asset;
+    for (const formats::Primitive& p : scene.primitives) {
+        formats::PrimitiveRecord record;
+        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+        record.vertex_count = static_cast<std::uint32_t>(p.position.size());
+        record.first_index = static_cast<std::uint32_t>(asset.index.size());
+        record.index_count = static_cast<std::uint32_t>(p.index.size());
+        asset.primitives.push_back(record);
+        for (const glm::vec3& v : p.position) {
+            const glm::vec3 world(scene.to_world(v));
+            asset.position.push_back({world.x, world.y, world.z});
+        }
+        asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
+    }
+    for (const formats::Volume& volume : scene.volumes) {
+        formats::PrimitiveRecord record;
+        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+        for (const glm::dvec3& corner : volume.density.corners()) {
+            const glm::vec3 world(scene.origin + corner);
+            asset.position.push_back({world.x, world.y, world.z});
+        }
+        record.vertex_count =
+            static_cast<std::uint32_t>(asset.position.size()) - record.first_vertex;
+        asset.primitives.push_back(record);
+    }
+    return asset;
+}
 
 // Nothing: textures are looked up at points.
 std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceOptions& options,

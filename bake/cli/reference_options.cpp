@@ -1,12 +1,15 @@
 #include "bake/cli/reference_options.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "bake/cli/inputs.h"
-#include "bake/cli/look_options.h"
+#include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
+#include "bake/cli/picture_options.h"
 #include "bake/cli/scene_options.h"
+#include "bake/reference/reference_scene.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {
@@ -58,6 +61,40 @@ void add_estimate_options(CLI::App& command, ReferenceOptions& options) {
         ->option_text("none|footprint|limited [none]");
     add_seed_option(command, options.seed, "another one gives other noise");
     add_threads_option(command, options.threads);
+}
+
+// Paths do not know cloud layers.
+void check_layers(const formats::Scene& scene) {
+    if (scene.layers.empty()) {
+        return;
+    }
+    if (scene.primitives.empty() && scene.volumes.empty()) {
+        refuse(make_error(ErrorKind::bad_input, scene.source, "clouds",
+                          "the scene is a cloud layer alone, which no paths are traced through",
+                          "a bake measures a layer's error itself; opaline slab computes layers by "
+                          "photons"));
+    }
+    require(report_warnings({formats::make_warning(
+        scene.source, "clouds", "the cloud layer is left out: no paths are traced through it",
+        "compare with a bake without it")}));
+}
+
+// A line to a light without an extent is not bent by a smooth boundary, and no path meets such a
+// light.
+void check_lights(const formats::Scene& scene) {
+    const auto bends = [](const formats::Material& m) {
+        return m.medium && !bake::is_matched(m.medium->eta) && !bake::has_rough_boundary(*m.medium);
+    };
+    if (scene.lights.empty() ||
+        std::none_of(scene.materials.begin(), scene.materials.end(), bends)) {
+        return;
+    }
+    require(report_warnings(
+        {formats::make_warning(scene.source, "KHR_lights_punctual",
+                               "light of points, spots and directional lights does not pass smooth "
+                               "boundaries that refract: "
+                               "bodies are lit by it as far as other surfaces reflect it",
+                               "give the light a surface: a small mesh with emissiveFactor")}));
 }
 
 }  // namespace
@@ -137,6 +174,20 @@ void add_reference_options(CLI::App& command, ReferenceOptions& options) {
     add_exposure_option(command, options.exposure, "0");
     add_rotate_light_option(command, options.rotate_light);
     add_progress_option(command, options.progress);
+}
+
+void check_traceable(const formats::Scene& scene) {
+    check_layers(scene);
+    check_lights(scene);
+}
+
+bake::OrientedBodies close_bodies(const formats::Scene& scene) {
+    bake::OrientedBodies bodies = bake::orient_bodies(scene);
+    for (bake::BodySurface& surface : bodies.surfaces) {
+        surface.open_edges = 0;  // paths are counted that are lost there
+    }
+    require(report_warnings(bake::describe_faults(scene, bodies.surfaces)));
+    return bodies;
 }
 
 }  // namespace opaline::cli

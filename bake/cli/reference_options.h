@@ -1,17 +1,27 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "bake/cli/camera_options.h"
 #include "bake/cli/path_integration.h"
+#include "bake/cli/picture_options.h"
 #include "bake/cli/progress.h"
+#include "bake/scene/orient_bodies.h"
 #include "formats/opal/result.h"
+#include "formats/scene.h"
 
 namespace opaline::cli {
+
+/// Whether paths can be traced through anything of the scene; warns of what they leave out. Errors:
+/// bad_input (a cloud layer alone), and warnings that count as errors.
+void check_traceable(const formats::Scene& scene);
+
+/// The scene's bodies as a bake sees them, with warnings about faults of their meshes.
+bake::OrientedBodies close_bodies(const formats::Scene& scene);
 
 /// Of `opaline reference`, as its help says; 0: not given.
 struct ReferenceOptions {

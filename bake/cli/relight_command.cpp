@@ -4,14 +4,12 @@
 #include <memory>
 
 #include "bake/cli/command.h"
-#include "bake/cli/emitter_options.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
-#include "bake/cli/light_with_layers.h"
-#include "bake/cli/look_options.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
+#include "bake/cli/picture_options.h"
 #include "bake/compare/relight_table.h"
 #include "formats/opal/terms.h"
 #include "runtime/shade.h"

@@ -4,17 +4,14 @@
 #include <memory>
 #include <optional>
 
-#include "bake/cli/camera_options.h"
 #include "bake/cli/command.h"
 #include "bake/cli/draw_frames.h"
-#include "bake/cli/emitter_options.h"
 #include "bake/cli/error_map.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/light_with_layers.h"
-#include "bake/cli/look_options.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
+#include "bake/cli/picture_options.h"
 #include "bake/cli/progress.h"
 #include "bake/encode/shorten_rows.h"
 #include "formats/opal/terms.h"

@@ -7,7 +7,6 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/memory_limit.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/effects/effects.h"

@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "bake/cli/interrupt.h"
-#include "bake/cli/memory_limit.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/slab_views.h"
 #include "bake/scattering/phase_series.h"
-#include "bake/slab/fit_column_model.h"
+#include "bake/slab/column_model.h"
 #include "bake/slab/radiance_table.h"
-#include "bake/slab/slab_table.h"
 #include "bake/slab/slab_walk.h"
 #include "bake/slab/solve_slab.h"
 #include "formats/media/read_phase_table.h"

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/mie/angular_table.h"
-#include "bake/slab/order_shares.h"
 #include "bake/slab/radiance_table.h"
 #include "bake/slab/slab_medium.h"
 #include "formats/scene.h"

@@ -13,7 +13,7 @@
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
 #include "bake/effects/transmission/transmission.h"
-#include "bake/emitters/describe_emitters.h"
+#include "bake/emitters/plan_emitters.h"
 #include "bake/layers/describe_layers.h"
 #include "bake/volumes/describe_volumes.h"
 

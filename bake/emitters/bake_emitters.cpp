@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bake/emitters/emitter_knobs.h"
-#include "bake/emitters/immersed_lamps.h"
+#include "bake/emitters/light_media.h"
 #include "bake/emitters/receiver_light.h"
 #include "bake/emitters/trace_particles.h"
 #include "bake/scene/lobe_record.h"

@@ -1,12 +1,14 @@
 #include "bake/emitters/light_media.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "bake/emitters/media_patches.h"
-#include "bake/emitters/series_sum.h"
 #include "bake/emitters/trace_particles.h"
-#include "bake/receivers/receiver_key.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/packet_lane.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/emitters.h"
 
@@ -123,6 +125,56 @@ void add_mirrored(const MediaJob& job, const LitMedium& medium, const MediumPatc
     }
 }
 
+// A ratio of two passes above this is taken for it: media are open somewhere.
+constexpr double kLargestRatio = 0.95;
+
+// Sums of what changed by lamp; of all where `before` has nothing.
+std::vector<glm::dvec3> sum_change(const MediaLight& before, const MediaLight& after,
+                                   std::size_t lamps) {
+    std::vector<glm::dvec3> sums(lamps, glm::dvec3(0));
+    for (std::size_t p = 0; p < after.exitance.size(); ++p) {
+        const std::vector<glm::vec3>& values = after.exitance[p];
+        const bool has_before = p < before.exitance.size() && !before.exitance[p].empty();
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const glm::vec3 from = has_before ? before.exitance[p][i] : glm::vec3(0);
+            sums[i / (values.size() / lamps)] += glm::dvec3(glm::abs(values[i] - from));
+        }
+    }
+    return sums;
+}
+
+constexpr std::size_t kMostPlaces = 64;  // of a lamp's triangles
+
+// Evenly spread over the sphere, one for each lane: a spiral of the golden angle.
+glm::vec3 spiral_direction(std::size_t i, std::size_t count) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count);
+    const double turn = static_cast<double>(i) * std::numbers::pi * (3 - std::sqrt(5.0));
+    const double radius = std::sqrt(1 - z * z);
+    return {radius * std::cos(turn), radius * std::sin(turn), z};
+}
+
+// `normal`: rays start on that side of it alone; 0: on all sides.
+bool is_inside_medium(const formats::Scene& scene, const RayScene& rays, const glm::vec3& from,
+                      const glm::vec3& normal) {
+    RayPacket packet = rays_from(from);
+    LaneMask lanes{};
+    std::size_t started = 0, backs = 0;
+    for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
+        const glm::vec3 direction = spiral_direction(i, RayPacket::kSize);
+        set_lane(packet, lanes, i, direction);
+        lanes[i] = glm::dot(direction, normal) >= 0 ? -1 : 0;
+        started += lanes[i] != 0 ? 1 : 0;
+    }
+    const PacketHits hits = rays.closest(lanes, packet);
+    for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
+        backs += lanes[i] != 0 && hits.hit[i] != 0 && hits.cosine[i] > 0 &&
+                         scene.materials[hits.material[i]].medium
+                     ? 1
+                     : 0;
+    }
+    return 2 * backs > started;
+}
+
 }  // namespace
 
 std::uint32_t lamp_basis(std::size_t lamps) {
@@ -194,6 +246,56 @@ MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<Ele
     }
     exitance = std::move(final_exitance);
     return result;
+}
+
+bool SeriesSum::is_last(const MediaLight& before, MediaLight& after, bool gets_none) {
+    std::vector<glm::dvec3> change = sum_change(before, after, lamps_);
+    const std::vector<glm::dvec3> all = sum_change({}, after, lamps_);
+    bool is_settled = true;
+    for (std::size_t e = 0; e < lamps_; ++e) {
+        is_settled = is_settled && !glm::any(glm::greaterThan(change[e], least_ * all[e]));
+    }
+    std::swap(change, last_);  // last_: of this pass; change: of the one before
+    if (!is_settled && !gets_none) return false;
+    if (change.empty()) return true;
+    for (std::size_t p = 0; p < after.exitance.size(); ++p) {
+        std::vector<glm::vec3>& values = after.exitance[p];
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            const std::size_t e = i / (values.size() / lamps_);
+            for (int b = 0; b < 3; ++b) {
+                const double ratio =
+                    change[e][b] > 0 ? std::min(last_[e][b] / change[e][b], kLargestRatio) : 0;
+                const float more = static_cast<float>(ratio / (1 - ratio)) *
+                                   (values[i][b] - before.exitance[p][i][b]);
+                values[i][b] = std::max(0.0f, values[i][b] + more);
+            }
+        }
+    }
+    return true;
+}
+
+bool is_immersed(const formats::Scene& scene, const RayScene& rays, const LampSources& lamp) {
+    if (rays.is_empty()) return false;
+    double inside = 0, all = 0;
+    const auto count = [&](const glm::dvec3& from, const glm::dvec3& normal,
+                           const glm::dvec3& power) {
+        const double weight = power.x + power.y + power.z;
+        all += weight;
+        inside += is_inside_medium(scene, rays, glm::vec3(from), glm::vec3(normal)) ? weight : 0;
+    };
+    const std::size_t step = 1 + lamp.triangles.size() / kMostPlaces;
+    for (std::size_t t = 0; t < lamp.triangles.size(); t += step) {
+        const GlowingTriangle& triangle = lamp.triangles[t];
+        const glm::dvec3 middle =
+            (triangle.corner[0] + triangle.corner[1] + triangle.corner[2]) / 3.0;
+        count(middle + 1e-4 * std::sqrt(triangle.area) * triangle.normal, triangle.normal,
+              triangle.power());
+    }
+    for (const formats::Light& light : lamp.lights) {
+        if (light.type == formats::Light::Type::directional) continue;
+        count(glm::dvec3(light.position), glm::dvec3(0), light_power(lamp, light));
+    }
+    return all > 0 && 2 * inside > all;
 }
 
 }  // namespace opaline::bake

@@ -1,16 +1,41 @@
 #pragma once
 
-#include <cstdint>
 #include <glm/glm.hpp>
+
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/emitters/lamp_sources.h"
 #include "bake/emitters/media_light.h"
-#include "bake/emitters/medium_answer.h"
+#include "bake/emitters/media_patches.h"
 #include "bake/emitters/receiver_light.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// Whether most of a lamp's power starts inside of media: of the rays from where it starts, in all
+/// directions, most meet the back of a medium's surface first. Such light goes nowhere in a bake.
+bool is_immersed(const formats::Scene& scene, const RayScene& rays, const LampSources& lamp);
+
+/// Watches light of media change from pass to pass, B_i+1 - B_i ~ q^i, and ends the series.
+class SeriesSum {
+  public:
+    /// Passes end once all lamps' light changes by less than `least` of itself.
+    SeriesSum(std::size_t lamps, double least) : lamps_(lamps), least_(least) {}
+
+    /// Whether `after` needs no further pass, or gets none. Then the sum of all changes to come is
+    /// added to it, q that of the last two passes, lamp by lamp and band by band.
+    bool is_last(const MediaLight& before, MediaLight& after, bool gets_none);
+
+  private:
+    std::size_t lamps_;
+    double least_;
+    std::vector<glm::dvec3> last_;  // change of the pass before, summed up, by lamp
+};
 
 /// What media are lit from.
 struct MediaJob {

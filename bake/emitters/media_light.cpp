@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-#include "bake/emitters/bounce_color.h"
+#include "bake/emitters/onward_ray.h"
 #include "bake/scene/texture_footprint.h"
 
 namespace opaline::bake {

@@ -1,17 +1,67 @@
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <cstddef>
 #include <cstdint>
-#include <glm/glm.hpp>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/emitters/medium_answer.h"
 #include "bake/emitters/receiver_light.h"
+#include "bake/plan/row_layout.h"
 #include "bake/receivers/receiver.h"
+#include "bake/transport/other_light.h"
+#include "formats/opal/asset.h"
+#include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// What a medium makes of light that arrives at its surface.
+struct MediumRequest {
+    std::uint32_t material = 0;
+    std::span<const Receiver> outside;
+    std::span<const BodyPoint> inside;
+    const OtherLight& light;         ///< without the environment
+    std::uint32_t cubemap_size = 1;  ///< of its basis
+    bool is_coarse = false;          ///< a step toward the result: cheaper
+};
+
+/// Rows of the points of a request: terms * 3 * 6 n n coefficients each. None where the medium has
+/// no rows.
+using LightMedium = std::function<std::vector<std::vector<float>>(const MediumRequest& request,
+                                                                  std::uint64_t& rays)>;
+
+/// Media of a scene, as the emitters' stages see them.
+struct LitMedia {
+    LightMedium light_medium;             ///< empty: there are none
+    std::span<const RowLayout> layouts;   ///< by material
+    std::span<const formats::Rgb> color;  ///< of all vertices of the file, without images
+};
+
+/// The receivers of one medium, of all its primitives.
+struct LitMedium {
+    std::uint32_t material = 0;
+    std::vector<std::uint32_t> primitives;
+    std::vector<std::uint32_t> first;  ///< of each primitive, its first receiver here
+    std::vector<Receiver> outside;
+    std::vector<BodyPoint> inside;
+    std::vector<formats::Rgb> color;  ///< LitMedia::color
+};
+
+/// All media of a file that have rows of their own.
+std::vector<LitMedium> list_lit_media(const LitMedia& media, std::span<const ReceiverSet> receivers,
+                                      std::span<const formats::PrimitiveRecord> primitives);
+
+/// Exitance at a receiver, color times sum_k g_k T_k, column by column. `row`: terms * 3 *
+/// `columns` values. `weights`: weigh_rows_of_medium at the receiver.
+std::vector<glm::vec3> exitance_of_row(std::span<const float> weights, formats::Rgb color,
+                                       std::span<const float> row, std::size_t columns);
+
+/// weigh_rows_of_medium at a receiver.
+std::vector<float> weigh_rows_at(const LitMedia& media, const formats::Scene& scene,
+                                 const LitMedium& medium, std::size_t receiver);
 
 /// The largest basis of patches, n of 6 n n, and the number of receivers that sample the surface.
 inline constexpr std::uint32_t kPatchBasis = 8;

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/emitters/bounce_color.h"
-#include "bake/emitters/largest_band.h"
 #include "bake/path_differentials/axis_frame.h"
 #include "bake/path_differentials/surface_shape.h"
 #include "bake/path_differentials/visible_normal.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/scene/base_color.h"
+#include "bake/transport/packet_lane.h"
 
 namespace opaline::bake {
 namespace {
@@ -115,6 +115,15 @@ std::optional<OnwardRay> cross_rough_boundary(const Crossing& crossing, const Su
     return onward;
 }
 
+glm::vec3 color_of(formats::Rgb c) {
+    return {c.r, c.g, c.b};
+}
+
+glm::vec3 clamped_color(const formats::Scene& scene, const SurfacePlace& place,
+                        const TextureView* view) {
+    return glm::clamp(base_color(scene, place, view), glm::vec3(0), glm::vec3(1));
+}
+
 }  // namespace
 
 double mirror_chance(const formats::Scene& scene, const Arrival& at, const glm::dvec3& direction) {
@@ -196,6 +205,69 @@ glm::dvec3 straight_transmittance(const formats::Scene& scene, const Arrival& at
     };
     return {band(medium->sigma_s.r, medium->sigma_a.r), band(medium->sigma_s.g, medium->sigma_a.g),
             band(medium->sigma_s.b, medium->sigma_a.b)};
+}
+
+std::optional<Arrival> arrival_of(const PacketHits& hits, std::size_t lane) {
+    if (hits.hit[lane] == 0 || hits.cosine[lane] == 0) return std::nullopt;
+    const bool is_back = hits.cosine[lane] > 0;
+    const glm::dvec3 normal(hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]);
+    Arrival arrival;
+    arrival.side = {hits.primitive[lane], hits.first_index[lane], is_back};
+    const double u = hits.u[lane], v = hits.v[lane];
+    arrival.weights = {1 - u - v, u, v};
+    arrival.normal = is_back ? -normal : normal;
+    arrival.material = hits.material[lane];
+    arrival.distance = hits.distance[lane];
+    arrival.error = hits.error[lane];
+    return arrival;
+}
+
+std::optional<Arrival> find_arrival(const RayScene& surfaces, const glm::vec3& from,
+                                    const glm::vec3& direction) {
+    return arrival_of(closest_of_one(surfaces, from, direction), 0);
+}
+
+glm::dvec3 leave_surface(const glm::dvec3& from, const glm::dvec3& direction, const Arrival& at,
+                         bool crosses) {
+    const glm::dvec3 hit = from + at.distance * direction;
+    if (crosses) return hit - 2 * at.error * at.normal;
+    const double back = std::min(2 * at.error / -glm::dot(direction, at.normal), 0.5 * at.distance);
+    return hit - back * direction;
+}
+
+BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
+                         const glm::vec3& weights, const TextureView* view) {
+    const formats::Primitive& primitive = scene.primitives[side.primitive];
+    const formats::Material& material = scene.materials[primitive.material];
+    if (material.medium || (side.is_back && !material.double_sided && !material.sheet)) return {};
+    const SurfacePlace place = surface_place(scene, side.primitive, side.first_index, weights);
+    const float metallic = material.gloss.metallic * roughness_texture(scene, place, view).b;
+    const glm::dvec3 color((1 - metallic) * clamped_color(scene, place, view));
+    if (!material.sheet) return {color, glm::dvec3(0)};
+    return {color * glm::dvec3(color_of(material.sheet->reflect)),
+            color * glm::dvec3(color_of(material.sheet->transmit))};
+}
+
+MetalPart metal_part(const formats::Scene& scene, const TriangleSide& side,
+                     const glm::vec3& weights) {
+    const formats::Primitive& primitive = scene.primitives[side.primitive];
+    const formats::Material& material = scene.materials[primitive.material];
+    const formats::Gloss& gloss = material.gloss;
+    if (material.medium || material.sheet || gloss.metallic == 0 ||
+        (side.is_back && !material.double_sided)) {
+        return {};
+    }
+    const SurfacePlace place = surface_place(scene, side.primitive, side.first_index, weights);
+    const glm::vec3 texture = roughness_texture(scene, place);
+    const double roughness{gloss.roughness * texture.g};
+    return {glm::dvec3(clamped_color(scene, place, nullptr)), double{gloss.metallic * texture.b},
+            roughness * roughness};
+}
+
+glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,
+                           const glm::vec3& weights, const TextureView* view) {
+    return base_color_texture(
+        scene, surface_place(scene, side.primitive, side.first_index, weights), view);
 }
 
 }  // namespace opaline::bake

@@ -1,14 +1,68 @@
 #pragma once
 
-#include <array>
 #include <glm/glm.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 
-#include "bake/emitters/surface_arrival.h"
+#include "bake/emitters/surface_elements.h"
 #include "bake/path_differentials/path_differential.h"
+#include "bake/scene/texture_pyramid.h"
+#include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// What a surface does to light that arrives at a point of one of its sides, both diffusely.
+struct BounceColor {
+    glm::dvec3 reflect{0};   ///< to the side that it came from, in [0, 1]
+    glm::dvec3 transmit{0};  ///< to the other side: of thin-walled surfaces
+};
+
+/// At a point of a triangle, `weights` barycentric. What is mirrored does not count (onward_ray.h).
+/// Black for media, whose light is in media_light.h, and for backs of single-sided surfaces.
+/// `view`: footprint of texture look-ups; null: at the point.
+BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
+                         const glm::vec3& weights, const TextureView* view = nullptr);
+
+/// The metal that a point of an opaque surface is made of: base color, how much of it is metal in
+/// [0, 1], GGX alpha. None of media, thin walls and backs of single-sided surfaces.
+struct MetalPart {
+    glm::dvec3 color{0};
+    double metallic = 0, alpha = 1;
+};
+MetalPart metal_part(const formats::Scene& scene, const TriangleSide& side,
+                     const glm::vec3& weights);
+
+/// The base color's image there, white without one.
+glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,
+                           const glm::vec3& weights, const TextureView* view = nullptr);
+
+/// Where a ray meets a surface.
+struct Arrival {
+    TriangleSide side;
+    glm::dvec3 weights{0};  ///< barycentric
+    glm::dvec3 normal{0};   ///< unit, of the side met
+    std::uint32_t material = 0;
+    double distance = 0, error = 0;  ///< along the ray; of the position [m]
+};
+
+/// Nothing where the ray met nothing, or a triangle edge-on.
+std::optional<Arrival> arrival_of(const PacketHits& hits, std::size_t lane);
+std::optional<Arrival> find_arrival(const RayScene& surfaces, const glm::vec3& from,
+                                    const glm::vec3& direction);
+
+/// In front of a surface that a ray met, on the side that its normal points to: back along the ray,
+/// as what is beside the surface may be outside in a corner. Or on the other side.
+glm::dvec3 leave_surface(const glm::dvec3& from, const glm::dvec3& direction, const Arrival& at,
+                         bool crosses);
+
+inline double largest_band(const glm::dvec3& of) {
+    return std::max({of.x, of.y, of.z});
+}
 
 /// A ray that a surface passes on without scattering it diffusely.
 struct OnwardRay {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bake/base/rng.h"
-#include "bake/emitters/largest_band.h"
+#include "bake/emitters/onward_ray.h"
 #include "bake/emitters/spread_points.h"
 #include "bake/emitters/trace_particles.h"
 #include "bake/path_differentials/area_sample.h"

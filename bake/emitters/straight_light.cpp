@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/emitters/glow_light.h"
-#include "bake/emitters/largest_band.h"
+#include "bake/emitters/onward_ray.h"
 #include "bake/emitters/spread_points.h"
 #include "bake/path_differentials/area_sample.h"
 #include "bake/scene/punctual_light.h"

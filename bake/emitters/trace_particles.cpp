@@ -8,12 +8,9 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
-#include "bake/emitters/bounce_color.h"
 #include "bake/emitters/glow_light.h"
-#include "bake/emitters/largest_band.h"
 #include "bake/emitters/onward_ray.h"
 #include "bake/emitters/particle_start.h"
-#include "bake/emitters/surface_arrival.h"
 #include "bake/path_differentials/path_differential.h"
 #include "bake/scene/texture_footprint.h"
 

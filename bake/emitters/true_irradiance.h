@@ -10,7 +10,7 @@
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/density_space.h"
-#include "bake/volumes/glow_space.h"
+#include "bake/volumes/glow_walks.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {

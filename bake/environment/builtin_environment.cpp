@@ -1,21 +1,23 @@
 #include "bake/environment/builtin_environment.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <vector>
 
-#include "bake/environment/procedural.h"
-
 namespace opaline::bake {
 namespace {
 
+using formats::DistantDisc;
 using formats::Environment;
 using formats::Error;
 using formats::ErrorKind;
+using formats::Image;
 using formats::LoadedEnvironment;
 using formats::Result;
+using formats::Rgb;
 using formats::Vec3;
 
 constexpr std::string_view kForms =
@@ -67,6 +69,120 @@ Environment make_sun(double azimuth, double elevation) {
     environment.discs.push_back(
         {direction_of(azimuth, elevation), radius, {radiance, radiance, radiance}});
     return environment;
+}
+
+struct Point {
+    double x, y, z;
+};
+
+Point lat_long_point(double u, double v) {
+    const double theta = std::numbers::pi * v, phi = std::numbers::pi * (2 * u - 1);
+    return {std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+}
+
+Vec3 to_vec3(Point p) {
+    return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
+}
+
+bool is_aligned(const Environment& environment, std::uint32_t width, std::uint32_t height) {
+    return environment.layout == Environment::Layout::lat_long && environment.width == width &&
+           environment.height == height && environment.u_offset == 0.5f &&
+           environment.u_sign == 1.0f && !environment.rows_include_poles;
+}
+
+/// Mean of the map over every pixel, each sample weighted by its solid angle.
+void rasterise_map(const Environment& environment, Image& image) {
+    const std::uint32_t source =
+        environment.layout == Environment::Layout::cube ? 4 * environment.width : environment.width;
+    const std::uint32_t k = std::clamp((2 * source + image.width - 1) / image.width, 2u, 16u);
+    for (std::uint32_t row = 0; row < image.height; ++row) {
+        for (std::uint32_t column = 0; column < image.width; ++column) {
+            double r = 0, g = 0, b = 0, total = 0;
+            for (std::uint32_t i = 0; i < k * k; ++i) {
+                const double v = (row + (i / k + 0.5) / k) / image.height;
+                const double u = (column + (i % k + 0.5) / k) / image.width;
+                const double weight = std::sin(std::numbers::pi * v);
+                const Rgb c = sample_map(environment, to_vec3(lat_long_point(u, v)));
+                r += weight * double{c.r};
+                g += weight * double{c.g};
+                b += weight * double{c.b};
+                total += weight;
+            }
+            image.pixel[std::size_t{row} * image.width + column] = {static_cast<float>(r / total),
+                                                                    static_cast<float>(g / total),
+                                                                    static_cast<float>(b / total)};
+        }
+    }
+}
+
+/// Adds a disc by its coverage of each pixel, then scales it to the exact flux.
+void add_disc(const DistantDisc& disc, Image& image) {
+    const double width = image.width, height = image.height;
+    const Point center{double{disc.direction.x}, double{disc.direction.y},
+                       double{disc.direction.z}};
+    const double radius = double{disc.angular_radius};
+    const double chord_squared = 4 * std::pow(std::sin(0.5 * radius), 2);
+    const auto distance_squared = [&](Point p) {
+        return std::pow(p.x - center.x, 2) + std::pow(p.y - center.y, 2) +
+               std::pow(p.z - center.z, 2);
+    };
+    // A point of a pixel is at most half the sum of the side lengths away from its centre.
+    const double reach = std::numbers::pi * (1 / width + 0.5 / height);
+    const double outer = std::min(radius + reach, std::numbers::pi),
+                 inner = std::max(radius - reach, 0.0);
+    const double far_squared = 4 * std::pow(std::sin(0.5 * outer), 2);
+    const double near_squared = 4 * std::pow(std::sin(0.5 * inner), 2);
+    // Sub-pixels are an eighth of the radius apart, so that a tiny disc still covers some.
+    const double pixel_size = std::numbers::pi * std::max(2 / width, 1 / height);
+    const int k = static_cast<int>(std::clamp(8 * pixel_size / radius, 16.0, 2048.0));
+
+    struct Covered {
+        std::size_t pixel;
+        double share;
+    };
+    std::vector<Covered> covered;
+    double flux = 0;  // of radiance 1
+    for (std::uint32_t row = 0; row < image.height; ++row) {
+        const double solid_angle = lat_long_pixel_solid_angle(image.width, image.height, row);
+        for (std::uint32_t column = 0; column < image.width; ++column) {
+            const double middle =
+                distance_squared(lat_long_point((column + 0.5) / width, (row + 0.5) / height));
+            if (middle > far_squared) continue;
+            double share = 1;
+            if (middle >= near_squared || inner == 0) {
+                double inside = 0, total = 0;
+                for (int i = 0; i < k; ++i) {
+                    const double v = (row + (i + 0.5) / k) / height,
+                                 weight = std::sin(std::numbers::pi * v);
+                    for (int j = 0; j < k; ++j) {
+                        const double u = (column + (j + 0.5) / k) / width;
+                        total += weight;
+                        if (distance_squared(lat_long_point(u, v)) <= chord_squared) {
+                            inside += weight;
+                        }
+                    }
+                }
+                share = inside / total;
+            }
+            if (share > 0) {
+                covered.push_back({std::size_t{row} * image.width + column, share});
+                flux += share * solid_angle;
+            }
+        }
+    }
+    if (covered.empty()) {  // smaller than the finest sub-pixel
+        const double u = 0.5 + std::atan2(center.z, center.x) / (2 * std::numbers::pi);
+        const double v = std::acos(std::clamp(center.y, -1.0, 1.0)) / std::numbers::pi;
+        const auto column = std::min(static_cast<std::uint32_t>(u * width), image.width - 1);
+        const auto row = std::min(static_cast<std::uint32_t>(v * height), image.height - 1);
+        covered.push_back({std::size_t{row} * image.width + column, 1});
+        flux = lat_long_pixel_solid_angle(image.width, image.height, row);
+    }
+    const double scale = formats::disc_solid_angle(disc.angular_radius) / flux;
+    for (const Covered& c : covered) {
+        Rgb& pixel = image.pixel[c.pixel];
+        pixel = pixel + static_cast<float>(scale * c.share) * disc.radiance;
+    }
 }
 
 }  // namespace
@@ -138,6 +254,28 @@ std::string list_builtin_environments() {
            "sky:TURBIDITY,EL   clear sky and sun; turbidity 1.7 (very clear) to 10 (hazy), "
            "elevation\n"
            "                   of the sun above 0 to 90 degrees, azimuth -40\n";
+}
+
+double lat_long_pixel_solid_angle(std::uint32_t width, std::uint32_t height, std::uint32_t row) {
+    // cos a - cos b as a product, which does not cancel at the poles.
+    const double middle = std::numbers::pi * (row + 0.5) / height,
+                 half = 0.5 * std::numbers::pi / height;
+    return 2 * std::numbers::pi / width * 2 * std::sin(middle) * std::sin(half);
+}
+
+Image rasterise_lat_long(const Environment& environment, std::uint32_t width,
+                         std::uint32_t height) {
+    Image image{width, height, {}};
+    if (is_aligned(environment, width, height) && !environment.pixel.empty()) {
+        image.pixel = environment.pixel;
+    } else {
+        image.pixel.resize(std::size_t{width} * height);
+        if (!environment.pixel.empty()) rasterise_map(environment, image);
+    }
+    for (const DistantDisc& disc : environment.discs) {
+        add_disc(disc, image);
+    }
+    return image;
 }
 
 }  // namespace opaline::bake

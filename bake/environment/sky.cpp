@@ -5,7 +5,6 @@
 
 #include "bake/environment/builtin_environment.h"
 #include "bake/environment/daylight.h"
-#include "bake/environment/procedural.h"
 
 namespace opaline::bake {
 namespace {

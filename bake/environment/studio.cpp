@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "bake/environment/builtin_environment.h"
-#include "bake/environment/procedural.h"
 
 namespace opaline::bake {
 namespace {

@@ -6,10 +6,8 @@
 #include <utility>
 
 #include "bake/example/density_fields.h"
-#include "bake/example/example_table.h"
 #include "bake/example/scene_parts.h"
 #include "bake/example/solid_mesh.h"
-#include "bake/example/sphere.h"
 
 namespace opaline::bake {
 namespace {

@@ -3,8 +3,6 @@
 #include <array>
 #include <vector>
 
-#include "bake/example/turned.h"
-
 namespace opaline::bake {
 
 namespace {

@@ -7,8 +7,6 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/example/sphere.h"
-#include "bake/example/turned.h"
 #include "formats/image/srgb.h"
 
 namespace opaline::bake {

@@ -5,7 +5,6 @@
 #include <cstddef>
 
 #include "bake/base/parallel_indices.h"
-#include "bake/example/edges.h"
 #include "bake/example/edit_mesh.h"
 
 namespace opaline::bake {

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <glm/glm.hpp>
+
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -9,6 +13,55 @@
 #include "formats/image/image.h"
 
 namespace opaline::bake {
+
+/// A smooth spine with a radius along it: a uniform cubic B-spline through its two end points. It
+/// is twice differentiable, so a tube around it shows no rings.
+class TaperedCurve {
+  public:
+    /// `control`: at least two points as (x, y, z, radius) [mm].
+    explicit TaperedCurve(const std::vector<glm::dvec4>& control);
+
+    struct Nearest {
+        glm::dvec3 point;    ///< on the spine
+        glm::dvec3 tangent;  ///< unit
+        double radius;       ///< of the tube there
+        double fraction;     ///< along the spine, 0 at its start, 1 at its end
+    };
+    /// The point of the spine nearest to `p`.
+    Nearest nearest(const glm::dvec3& p) const;
+
+    /// Signed distance to the tube, exact up to its taper.
+    double distance(const glm::dvec3& p) const;
+
+    /// A lower bound of the distance from `p` to the tube, cheap and tight for a nearly straight
+    /// one.
+    double distance_bound(const glm::dvec3& p) const;
+
+  private:
+    struct Point {
+        glm::dvec4 value, first, second;
+    };
+    Point evaluate(double t) const;
+
+    std::vector<std::array<glm::dvec4, 4>> spans_;  ///< polynomials, constant term first
+    std::vector<glm::dvec3> samples_;  ///< even in the parameter: where the search begins
+    double reach_ = 0.0;               ///< largest distance of a point of the tube from its chord
+    double chord_distance(const glm::dvec3& p) const;
+};
+
+/// A ball from an icosahedron whose triangles are cut into four `levels` times:
+/// 10 * 4^levels + 2 vertices.
+TriangleMesh make_sphere(glm::dvec3 centre, double radius, unsigned levels);
+
+/// A point of a profile: its distance from the axis, its height, and its normal in that plane, of
+/// any length. An edge has a point for each of its two normals.
+struct ProfilePoint {
+    double radius = 0, height = 0;
+    glm::dvec2 normal{1, 0};
+};
+
+/// The profile turned about +Y, with `around` cells; from below to above its outside is in front.
+TriangleMesh turn_about_axis(std::span<const ProfilePoint> profile, unsigned around);
 
 /// A square floor at y = 0, facing up.
 struct FloorOptions {

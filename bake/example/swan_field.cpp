@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/example/tapered_curve.h"
-
 namespace opaline::bake {
 namespace {
 

@@ -4,7 +4,7 @@
 #include <system_error>
 #include <utility>
 
-#include "bake/example/example_table.h"
+#include "bake/example/example_scenes.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/vdb/write_vdb.h"
 

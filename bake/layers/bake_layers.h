@@ -6,7 +6,7 @@
 
 #include "bake/base/context.h"
 #include "bake/base/stage_log.h"
-#include "bake/layers/droplet_bands.h"
+#include "bake/layers/layer_tables.h"
 #include "bake/plan/knobs.h"
 #include "formats/opal/clouds.h"
 #include "formats/opal/result.h"

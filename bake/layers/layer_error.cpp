@@ -7,9 +7,7 @@
 
 #include "bake/base/rng.h"
 #include "bake/layers/layer_tables.h"
-#include "bake/layers/stored_tables.h"
 #include "bake/slab/low_orders.h"
-#include "bake/slab/once_fluxes.h"
 #include "bake/slab/solve_radiance.h"
 #include "bake/slab/solve_slab.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "bake/base/context.h"
-#include "bake/layers/droplet_bands.h"
+#include "bake/layers/layer_tables.h"
 #include "formats/opal/clouds.h"
 
 namespace opaline::bake {

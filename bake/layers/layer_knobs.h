@@ -8,7 +8,6 @@
 #include "bake/plan/knob.h"
 #include "bake/plan/knobs.h"
 #include "bake/slab/radiance_table.h"
-#include "bake/slab/slab_table.h"
 
 namespace opaline::bake {
 

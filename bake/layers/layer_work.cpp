@@ -6,8 +6,8 @@
 
 #include "bake/mie/forward_peak.h"
 #include "bake/mie/sphere_scattering.h"
+#include "bake/slab/radiance_table.h"
 #include "bake/slab/solve_slab.h"
-#include "bake/slab/table_place.h"
 
 namespace opaline::bake {
 namespace {

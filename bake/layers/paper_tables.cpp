@@ -6,13 +6,12 @@
 #include <numbers>
 
 #include "bake/layers/layer_tables.h"
-#include "bake/layers/stored_tables.h"
 #include "bake/mie/phase_texture.h"
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/slab/column_model.h"
 #include "bake/slab/low_orders.h"
+#include "bake/slab/radiance_table.h"
 #include "bake/slab/solve_slab.h"
-#include "bake/slab/table_place.h"
 
 namespace opaline::bake {
 namespace {

@@ -4,7 +4,6 @@
 
 #include "bake/mie/forward_peak.h"
 #include "bake/slab/radiance_table.h"
-#include "bake/slab/slab_table.h"
 
 namespace opaline::bake {
 

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/mie/droplets.h"
 #include "bake/mie/mie_series.h"
-#include "bake/mie/number_text.h"
 #include "bake/mie/sphere_scattering.h"
 
 namespace opaline::bake {

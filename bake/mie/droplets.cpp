@@ -7,8 +7,6 @@
 #include <numbers>
 #include <string>
 
-#include "bake/mie/number_text.h"
-
 namespace opaline::bake {
 namespace {
 

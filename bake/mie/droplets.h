@@ -1,10 +1,19 @@
 #pragma once
 
+#include <cstdio>
+#include <string>
 #include <vector>
 
 #include "formats/opal/result.h"
 
 namespace opaline::bake {
+
+/// Six significant digits, for messages: 5.5e-07, 20000, nan.
+inline std::string number_text(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
+}
 
 /// Droplets whose radii follow a modified gamma distribution [Bouthors2006]:
 ///   n(r) = N0 / (Gamma(gamma) r_n) (r / r_n)^(gamma - 1) exp(-r / r_n),   int n dr = N0,

@@ -6,7 +6,7 @@
 #include <string>
 #include <type_traits>
 
-#include "bake/mie/number_text.h"
+#include "bake/mie/droplets.h"
 
 namespace opaline::bake {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "bake/mie/number_text.h"
+#include "bake/mie/droplets.h"
 
 namespace opaline::bake {
 namespace {

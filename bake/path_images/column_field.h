@@ -1,15 +1,78 @@
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/path_images/band.h"
-#include "bake/path_images/depth_lattice.h"
+#include "bake/path_integral/volume_box.h"
 #include "bake/reference/hit_scene.h"
+#include "bake/reference/volume_space.h"
 
 namespace opaline::bake {
+
+/// Nodes of a cubic lattice, those near density alone.
+struct DepthLattice {
+    glm::dvec3 low{0};   ///< [m] of node (0, 0, 0)
+    double spacing = 1;  ///< [m]
+    glm::ivec3 count{0};
+    std::vector<std::uint32_t> slot;  ///< by node, x fastest; formats::kNone: far from density
+    std::vector<glm::vec3> position;  ///< [m] by slot
+};
+
+/// The box [m] in which density may be.
+VolumeBox density_box(const VolumeSpace& space);
+
+/// The shortest edge of a voxel [m].
+double voxel_edge(const VolumeSpace& space);
+
+/// Nodes as far apart as voxels, or farther where there would be more than `most` of them. Every
+/// point with density has all eight nodes around it.
+DepthLattice make_depth_lattice(const VolumeSpace& space, std::size_t most);
+
+/// The eight nodes around a point, and their shares.
+struct DepthNodes {
+    std::array<std::uint32_t, 8> slot;
+    std::array<double, 8>
+        weight;  ///< sum 1, where there is density; 0 for nodes that are far from density
+};
+DepthNodes depth_nodes_around(const DepthLattice& lattice, glm::dvec3 x);
+
+/// The coefficients of all volumes in channels that have the same [1/m where a density is 1].
+struct MediumBand {
+    std::array<double, formats::kMaxVolumes> scattering{}, extinction{};  ///< by volume
+    std::array<bool, 3> channel{};                                        ///< that it stands for
+
+    bool operator==(const MediumBand& other) const {
+        return scattering == other.scattering && extinction == other.extinction;
+    }
+};
+
+/// One band for a grey scene, else one for each set of equal channels.
+std::vector<MediumBand> make_bands(const VolumeSpace& space);
+
+/// The same medium without absorption.
+MediumBand without_absorption(MediumBand band);
+
+/// The sum of all volumes in a band, as the functions of path_integral/ take it. Refers to both.
+struct BandMedium {
+    const VolumeSpace& space;
+    const MediumBand& band;
+
+    Coefficients operator()(glm::dvec3 x) const {
+        Coefficients sum;
+        for (std::size_t v = 0; v < space.volumes.size(); ++v) {
+            const auto density = static_cast<double>(space.volumes[v].density(glm::vec3(x)));
+            sum.scattering += band.scattering[v] * density;
+            sum.absorption += (band.extinction[v] - band.scattering[v]) * density;
+        }
+        return sum;
+    }
+};
 
 /// int density ds [density m] of each volume along a ray, by the midpoint rule in steps of at most
 /// `voxels_per_step` voxels. `direction`: unit; `reach` [m], may be infinite.

@@ -8,7 +8,6 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/stage_log.h"
-#include "bake/path_images/even_furnace.h"
 #include "bake/path_images/scattered_light.h"
 #include "bake/path_images/surface_light.h"
 #include "bake/path_integral/least_attenuation.h"

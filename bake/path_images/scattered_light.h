@@ -1,15 +1,16 @@
 #pragma once
 
 #include <glm/glm.hpp>
+
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "bake/path_images/band.h"
+#include "bake/base/context.h"
 #include "bake/path_images/column_field.h"
 #include "bake/path_images/image_lights.h"
-#include "bake/path_images/sky_view.h"
 #include "bake/path_integral/quasi_path.h"
+#include "runtime/picture/camera.h"
 
 namespace opaline::bake {
 
@@ -83,5 +84,31 @@ struct ScatterOptions {
 /// `often` holds all that is scattered of the sky (20, 21).
 RayLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
                           const ScatterOptions& options);
+
+/// Bounds of the factor.
+inline constexpr double kLeastFactor = 0.5, kMostFactor = 2;
+
+/// Factor of orders of two and more with which the ray has radiance 1 in a white furnace, where
+/// nothing is absorbed: F = (1 - e^-tau - L_once) / L_often, limited to the bounds above. 1 where
+/// there is nothing to scatter. `ray` holds the steps of `band` without its absorption as band
+/// `number`; surfaces count as absent. `sky`: an even sky of radiance 1, with the ray's kernel.
+double furnace_factor(const ScatteringSpace& space, const ViewRay& ray, const MediumBand& band,
+                      std::size_t number, const SkyView& sky);
+
+/// Factors of a picture's rays: exact at the corners of squares of pixels, linear between corners
+/// at which the ray meets density.
+struct FurnaceGrid {
+    static constexpr std::uint32_t kPixels = 4;  ///< along an edge of a square
+
+    std::uint32_t columns = 0, rows = 0, bands = 0;
+    std::vector<double> factor;  ///< [(row * columns + column) * bands + band]; 0: no density
+
+    /// At a place of the picture, in pixels.
+    double at(double x, double y, std::size_t band) const;
+};
+
+/// `eye`: in the scene's frame.
+FurnaceGrid make_furnace_grid(const ScatteringSpace& space, const runtime::Camera& camera,
+                              glm::vec3 eye, const Context& context);
 
 }  // namespace opaline::bake

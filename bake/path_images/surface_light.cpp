@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "bake/reference/glossy_brdf.h"
-#include "bake/reference/opaque_surface.h"
 
 namespace opaline::bake {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bake/path_integral/coefficients.h"
+#include "bake/path_integral/volume_box.h"
 #include "bake/scattering/phase_series.h"
 
 namespace opaline::bake {

@@ -2,7 +2,6 @@
 
 #include <glm/glm.hpp>
 
-#include "bake/path_integral/coefficients.h"
 #include "bake/path_integral/volume_box.h"
 #include "formats/sparse_grid.h"
 

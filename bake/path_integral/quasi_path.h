@@ -5,7 +5,6 @@
 #include <glm/glm.hpp>
 #include <limits>
 
-#include "bake/path_integral/coefficients.h"
 #include "bake/path_integral/turn.h"
 #include "bake/path_integral/volume_box.h"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "bake/scattering/poisson_phase.h"
-#include "bake/scattering/power_phase.h"
 
 namespace opaline::bake {
 namespace {

@@ -43,7 +43,7 @@ struct ZonalTable {
 ZonalTable make_zonal_table(PathKernel kernel, const PhaseSeries& series);
 
 /// The same with directions along paths as [Premoze2003] has them: (12) instead of the exact law
-/// (scattering/power_phase.h). `kernel`: ray or boundary. As many degrees as for the exact table.
+/// (scattering/poisson_phase.h). `kernel`: ray or boundary. As many degrees as for the exact table.
 ZonalTable make_power_table(PathKernel kernel, const formats::PhaseFunction& phase,
                             unsigned degrees);
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "bake/emitters/lamps.h"
-#include "bake/pipeline/bill.h"
 #include "bake/pipeline/costed_bake.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/plan/bake_inputs.h"

@@ -5,7 +5,7 @@
 
 #include "bake/accuracy/error_warnings.h"
 #include "bake/layers/plan_layers.h"
-#include "bake/mie/number_text.h"
+#include "bake/mie/droplets.h"
 
 namespace opaline::bake {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <utility>
 
-#include "bake/accuracy/check_rows.h"
 #include "bake/accuracy/error_warnings.h"
+#include "bake/accuracy/measure_error.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/emitters/plan_emitters.h"
 #include "bake/encode/pack_asset.h"
@@ -19,11 +19,9 @@
 #include "bake/pipeline/provenance.h"
 #include "bake/pipeline/shared_light.h"
 #include "bake/pipeline/volume_stages.h"
-#include "bake/pipeline/volume_warnings.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/rows/gather_rows.h"
-#include "bake/rows/rows_of_points.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"

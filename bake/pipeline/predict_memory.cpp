@@ -16,7 +16,7 @@ constexpr double kThread = 4e6;             // its block of receivers, its stack
 constexpr double kVertex = 12 + 12 + 8;     // of the scene: position, normal, texcoord
 constexpr double kIndex = 4;                // of the scene
 constexpr double kPrimitive = 32e3;         // names, a stage of the report, an Embree geometry
-constexpr double kPlanTriangle = 200;       // edges and hulls while the scene is inspected
+constexpr double kPlanTriangleBytes = 200;  // edges and hulls while the scene is inspected
 constexpr double kHierarchyTriangle = 200;  // Embree's, while it is built
 constexpr double kReceiver = 150;           // vertex: receivers, body points, cells that weld them
 constexpr double kGrowth = 2;               // rows are appended to vectors that double
@@ -111,7 +111,7 @@ MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& 
     return {{{"the program", kProgram + kThread * threads},
              {"the scene", vertices * kVertex + indices * kIndex + counts.image_bytes},
              {"its primitives and instances", primitives * kPrimitive},
-             {"the ray hierarchy", triangles * std::max(kPlanTriangle, kHierarchyTriangle)},
+             {"the ray hierarchy", triangles * std::max(kPlanTriangleBytes, kHierarchyTriangle)},
              {"receivers", vertices * kReceiver},
              {"surface samples", counts.media * samples},
              {"volumes", counts.volume_bytes},

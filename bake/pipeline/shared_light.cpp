@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "bake/rows/rows_of_points.h"
+#include "bake/rows/gather_rows.h"
 
 namespace opaline::bake {
 namespace {

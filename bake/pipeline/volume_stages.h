@@ -1,15 +1,25 @@
 #pragma once
 
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "bake/accuracy/volumes/volume_error.h"
 #include "bake/emitters/lamps.h"
 #include "bake/pipeline/pipeline.h"
+#include "bake/plan/knobs.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/plan_volumes.h"
 #include "bake/volumes/volume_work.h"
+#include "formats/opal/result.h"
 
 namespace opaline::bake {
+
+/// Warns where the error of volumes exceeds the target or, without one, the lower end of its
+/// interval exceeds acceptable_error.
+void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>& error,
+                     std::vector<formats::Diagnostic>& warnings);
 
 /// What the stages of volumes work on.
 struct VolumeStages {

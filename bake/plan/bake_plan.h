@@ -8,11 +8,17 @@
 #include <vector>
 
 #include "bake/plan/knobs.h"
-#include "bake/plan/subject.h"
 #include "bake/scene/scene_facts.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// The subject of a decision. A material represents its surfaces and the medium inside.
+struct Subject {
+    enum class Kind : std::uint8_t { material, volume, layer, emitter } kind = Kind::material;
+    std::uint32_t index = 0;  ///< into Scene::materials, volumes or layers
+    std::string name;         ///< for messages and reports: "material 'Floor'"
+};
 
 /// Identifies an effect; the enumerators are defined beside the table (effects/effects.h).
 enum class Effect : std::uint8_t;

@@ -1,12 +1,30 @@
 #pragma once
 
-#include "bake/plan/cost_by_size.h"
+#include <algorithm>
+#include <cmath>
+
 #include "bake/plan/knobs.h"
 #include "bake/plan/row_layout.h"
+#include "bake/scattering/half_space_medium.h"
 #include "bake/scene/scene_facts.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// Seconds of one thread per unit of work as a function of the number of triangles: two values,
+/// linear in log2 of the number (the depth of the hierarchy) between and beyond them.
+struct CostBySize {
+    static constexpr double kFew = 3072, kMany = 49152;  ///< triangles of the two values
+    double few = 0, many = 0;
+
+    /// `triangles` >= 0. Never less than a fraction of `few`, because a mesh of one triangle has a
+    /// cost too.
+    double at(double triangles) const {
+        constexpr double kLeastShare = 0.25;
+        const double place = std::log2(std::max(triangles, 1.0) / kFew) / std::log2(kMany / kFew);
+        return std::max(few + place * (std::max(many, few) - few), kLeastShare * few);
+    }
+};
 
 /// Work in seconds of one thread: the serial part and the parallel part.
 struct Work {
@@ -62,5 +80,14 @@ Work true_irradiance_work(const SubjectCost& cost);
 /// Transform, selection and quantising.
 Work encode_work(const CostInput& input, std::uint32_t rows, std::uint32_t bands, double receivers);
 Work openness_work(const CostInput& input, double receivers, bool occluded);
+
+/// Seconds of a random walk through a body: a flight and what ends it.
+inline constexpr CostBySize kBodyEvent{2.4e-7, 2.8e-7};
+
+/// Random walks that find the reflectance of a medium (half_space_reflectance), all bands.
+inline Work walk_work(const formats::Medium& medium) {
+    constexpr double kEvent = 5.6e-8;
+    return {0, count_walk_events(medium) * kEvent};
+}
 
 }  // namespace opaline::bake

@@ -1,7 +1,9 @@
 #pragma once
 
-#include <cstdint>
 #include <glm/glm.hpp>
+
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -48,5 +50,17 @@ struct ReceiverSet {
 const ReceiverSet& set_of(std::span<const ReceiverSet> sets, std::uint32_t receiver);
 /// Receivers of all sets.
 std::uint32_t count_receivers(std::span<const ReceiverSet> sets);
+
+/// Key of a receiver's random numbers where it has no number: a hash of its place and normal, so
+/// that copies of a vertex draw the same.
+inline std::uint64_t key_of(const Receiver& at) {
+    std::uint64_t key = 0x9e3779b97f4a7c15u;
+    for (const float value :
+         {at.origin.x, at.origin.y, at.origin.z, at.normal.x, at.normal.y, at.normal.z}) {
+        key = (key ^ std::bit_cast<std::uint32_t>(value)) * 0xff51afd7ed558ccdu;
+        key ^= key >> 32;
+    }
+    return key;
+}
 
 }  // namespace opaline::bake

@@ -22,7 +22,7 @@ SurfaceSample make_surface_sample(const formats::Scene& scene, const SurfacePoin
 ///
 /// Method: weighted sample elimination [Yuksel2015] from 4 candidates per sample (5 for few), the
 /// candidates stratified by area along the triangle list, then one step of Lloyd's relaxation
-/// (centre_in_cells.h). Points with opposed normals do not repel each other, so both sides of a
+/// (surface_samples.h). Points with opposed normals do not repel each other, so both sides of a
 /// thin sheet are covered. The result depends on the scene and the seed only. Samples are in
 /// kd-order (kd_order.h). Returns fewer points only where the surface has no area.
 std::vector<SurfaceSample> sample_surface(const formats::Scene& scene,

@@ -4,10 +4,10 @@
 #include <glm/glm.hpp>
 #include <optional>
 
-#include "bake/reference/boundary.h"
-#include "bake/reference/opaque_surface.h"
+#include "bake/reference/glossy_brdf.h"
 #include "bake/reference/path.h"
 #include "bake/reference/path_filter.h"
+#include "bake/reference/rough_boundary.h"
 
 namespace opaline::bake {
 

@@ -5,9 +5,9 @@
 #include <limits>
 #include <utility>
 
-#include "bake/reference/boundary.h"
 #include "bake/reference/events.h"
 #include "bake/reference/light_line.h"
+#include "bake/reference/rough_boundary.h"
 #include "bake/reference/shading_normal.h"
 #include "bake/reference/volume_flight.h"
 #include "bake/scene/emission.h"

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "bake/reference/free_flight.h"
 #include "bake/reference/hit_scene.h"
 #include "bake/reference/lamp_sampler.h"
+#include "bake/reference/volume_flight.h"
 #include "bake/reference/volume_space.h"
 #include "bake/transport/clearance_grid.h"
 #include "formats/opal/result.h"

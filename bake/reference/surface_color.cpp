@@ -1,5 +1,5 @@
+#include "bake/reference/glossy_brdf.h"
 #include "bake/reference/lamp_sampler.h"
-#include "bake/reference/opaque_surface.h"
 #include "bake/reference/path_filter.h"
 #include "bake/scene/base_color.h"
 #include "bake/scene/emission.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/reference/free_flight.h"
-
 namespace opaline::bake {
 namespace {
 

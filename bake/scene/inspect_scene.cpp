@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "bake/scene/body_shells.h"
-#include "bake/scene/color_contrast.h"
 #include "bake/scene/horizon.h"
 #include "bake/scene/nested_media.h"
+#include "bake/scene/scene_facts.h"
 #include "bake/scene/sent_share.h"
 
 namespace opaline::bake {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "formats/opal/gloss.h"
 #include "formats/opal/gloss_model.h"
 #include "formats/scene.h"
 

@@ -7,7 +7,7 @@
 #include "bake/base/parallel_indices.h"
 #include "bake/scattering/scattering_color.h"
 #include "bake/scene/marble.h"
-#include "bake/scene/nearest_grid.h"
+#include "bake/scene/nearest_surface.h"
 #include "bake/scene/texture_footprint.h"
 #include "bake/scene/texture_pyramid.h"
 

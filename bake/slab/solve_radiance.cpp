@@ -4,9 +4,9 @@
 #include <cmath>
 #include <complex>
 
-#include "bake/slab/albedo_circle.h"
-#include "bake/slab/layer_chain.h"
+#include "bake/slab/layer.h"
 #include "bake/slab/low_orders.h"
+#include "bake/slab/solve_slab.h"
 
 namespace opaline::bake {
 namespace {

@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/slab/slab_medium.h"
+
 namespace opaline::bake {
 
 /// Directions at which the light in a slab is known: the nodes of a Gauss-Legendre rule over the
@@ -26,5 +28,18 @@ Streams make_streams(int quadrature, std::span<const double> others, double spli
 /// P_l^m(cosine), without the sign (-1)^m: row l - m holds degree l, up to degree `degrees` - 1.
 /// 0 <= m < degrees.
 Eigen::MatrixXd associated_legendre(const Eigen::VectorXd& cosine, int m, int degrees);
+
+/// A phase function in one azimuth mode, between streams (rows and columns as in Layer): p++ and
+/// p+-, (for m = 0) the mean over the azimuth, of mean 2 over the cosines, without the peak that is
+/// not resolved.
+struct PhaseKernels {
+    Eigen::MatrixXd forward, backward;
+    double peak = 0;  ///< share of the scattering that goes straight on [Wiscombe1977]
+};
+
+/// Of mode m, `entering` columns, with as many moments as the streams resolve: 2 a node of the
+/// rule.
+PhaseKernels make_phase_kernels(const SlabMedium& medium, const Streams& streams, int m,
+                                Eigen::Index entering);
 
 }  // namespace opaline::bake

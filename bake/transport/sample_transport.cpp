@@ -9,7 +9,6 @@
 #include "bake/receivers/kd_order.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/transport/irradiance_transport.h"
-#include "bake/transport/shared_irradiance.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <cstdint>
 #include <filesystem>
-#include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
@@ -36,12 +37,19 @@ std::span<const char* const> published_lights();
 double relit(std::span<const float> row, std::span<const float> light);
 
 /// The published set: white, the sun at three angles, studio, sky. It is the same for every bake,
-/// and takes a second: `cache` is a file to keep it in (test_light_cache.h), empty for none.
+/// and takes a second: `cache` is a file to keep it in (test_lights.h), empty for none.
 formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_size,
                                                          unsigned threads,
                                                          const std::filesystem::path& cache = {});
 
 /// Projects them on a cube map of another size.
 void project_test_lights(std::span<TestLight> lights, std::uint32_t cubemap_size);
+
+/// The test lights that this very program (its file, byte for byte) wrote before, without
+/// TestLight::coarse; empty where there are none, or a byte of them is wrong.
+std::vector<TestLight> read_test_lights(const std::filesystem::path& file);
+
+/// Keeps them for the next time. A failure is no error: they are computed again.
+void write_test_lights(const std::filesystem::path& file, const std::vector<TestLight>& lights);
 
 }  // namespace opaline::bake

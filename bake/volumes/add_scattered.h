@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "bake/volumes/light_cells.h"
+#include "bake/volumes/attenuation.h"
 #include "bake/volumes/scaled_phase.h"
 
 namespace opaline::bake {

@@ -5,10 +5,8 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/volumes/glow_space.h"
 #include "bake/volumes/glow_walks.h"
 #include "formats/opal/half.h"
-#include "formats/opal/shared_exponent.h"
 
 namespace opaline::bake {
 namespace {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <vector>
 
-#include "bake/volumes/scale_medium.h"
 #include "bake/volumes/scaled_phase.h"
 #include "formats/scene.h"
 

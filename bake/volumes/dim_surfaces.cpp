@@ -1,21 +1,96 @@
 #include "bake/volumes/dim_surfaces.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
+#include <numbers>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/select_coefficients.h"
+#include "bake/receivers/other_side.h"
+#include "bake/receivers/receiver.h"
 #include "bake/volumes/attenuation.h"
 #include "bake/volumes/density_space.h"
-#include "bake/volumes/light_cells.h"
-#include "bake/volumes/lit_vertex.h"
+#include "bake/volumes/sent_light.h"
+#include "formats/opal/asset.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
+#include "formats/opal/rgb.h"
+#include "formats/scene.h"
 
 namespace opaline::bake {
 namespace {
+
+// What volumes scatter to both sides of a vertex; `back` is that of a sheet, otherwise empty.
+struct LitVertex {
+    SentIrradiance front, back;
+
+    std::uint64_t rays() const { return front.rays + back.rays; }
+};
+
+// Response of a row to the irradiance on either side of its vertex: radiance per irradiance.
+struct LitRow {
+    float front = 0, back = 0;
+};
+
+// Sides of a body's vertex of which less is open answer to light of the sky by chance.
+constexpr float kLeastOpen = 0.1f;
+
+float in_band_of(formats::Rgb c, std::uint32_t band, std::uint32_t bands) {
+    return bands == 1 ? formats::luminance(c) : std::array<float, 3>{c.r, c.g, c.b}[band];
+}
+
+// `set`: with a receiver for each vertex; `shading` that of its primitive.
+LitVertex light_vertex(const SentLight& light, const ReceiverSet& set, std::size_t vertex,
+                       formats::Shading shading) {
+    LitVertex lit;
+    lit.front = gather_sent_light(light, set.outside[vertex]);
+    if (shading == formats::Shading::sheet) {
+        lit.back = gather_sent_light(light, other_side(set.outside[vertex], set.inside[vertex]));
+    }
+    return lit;
+}
+
+// Of term `term` of a sheet's or an opaque surface's vertex in one of `bands` bands.
+LitRow answer_of_surface(const formats::Material& material, std::uint32_t term, std::uint32_t band,
+                         std::uint32_t bands) {
+    constexpr float kShare = std::numbers::inv_pi_v<float>;
+    if (!material.sheet) {
+        return {kShare, 0};
+    }
+    const float r = kShare * in_band_of(material.sheet->reflect, band, bands);
+    const float t = kShare * in_band_of(material.sheet->transmit, band, bands);
+    return term == 0 ? LitRow{r, t} : LitRow{t, r};
+}
+
+// Of a medium: the row's response to an even sky per irradiance; `texels` are the row's values
+// before volumes dim them, `solid_angles` those of a face of their cube map.
+LitRow answer_of_medium(std::span<const float> texels, std::span<const double> solid_angles,
+                        float open) {
+    double even = 0;
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        even += static_cast<double>(texels[i]) * solid_angles[i % solid_angles.size()];
+    }
+    return {static_cast<float>(even) * std::numbers::inv_pi_v<float> / std::max(open, kLeastOpen),
+            0};
+}
+
+// Adds that to the texel values of one band of a row, 6 n n.
+void add_sent_light(const SentLight& light, const LitVertex& lit, const LitRow& answer,
+                    std::uint32_t band, std::uint32_t n, std::span<float> texels) {
+    const std::size_t cells = light.cells.size();
+    const std::size_t first = light.bands() == 1 ? 0 : band * cells;
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+        const std::size_t cell = first + coarser_texel(i, n, light.cells.n);
+        texels[i] += answer.front * lit.front.rows[cell];
+        if (!lit.back.rows.empty()) {
+            texels[i] += answer.back * lit.back.rows[cell];
+        }
+    }
+}
 
 constexpr std::size_t kVerticesAtOnce = 16;         // vertices that a thread takes at once
 constexpr std::uint32_t kFinestTransmittance = 16;  // texels along an edge of a face

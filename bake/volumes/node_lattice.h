@@ -1,11 +1,13 @@
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <array>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "formats/opal/sparse_rows.h"
 #include "formats/sparse_grid.h"
 
 namespace opaline::bake {
@@ -45,5 +47,14 @@ NodesAround nodes_around(const NodeLattice& lattice, glm::vec3 index);
 /// there is none. `to_scene`: SparseGrid::to_scene.
 std::uint32_t choose_spacing(std::span<const float> values, const glm::dmat4& to_scene,
                              double sigma_t, double depth);
+
+/// The mean density around each node, linear in the distance to the next one along each axis,
+/// relative to the largest of them.
+std::vector<float> node_densities(const formats::SparseGrid<float>& density,
+                                  const NodeLattice& lattice);
+
+/// RMS over directions and bands of a row of V on a cube map of n x n texels: how much of the light
+/// of a node reaches eyes all around, because depths are the same both ways.
+float mean_visibility(const formats::SparseRow& attenuated, std::uint32_t n);
 
 }  // namespace opaline::bake

@@ -1,18 +1,22 @@
 #pragma once
 
+#include <glm/glm.hpp>
+
 #include <cstddef>
 #include <cstdint>
-#include <glm/glm.hpp>
 #include <span>
 #include <vector>
 
+#include "bake/base/context.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/attenuation.h"
 #include "bake/volumes/density_space.h"
-#include "bake/volumes/light_cells.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/plan_volumes.h"
 #include "bake/volumes/seen_surfaces.h"
+#include "bake/volumes/volume_walks.h"
+#include "formats/opal/sparse_rows.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -73,5 +77,17 @@ std::size_t number_of(const VolumeJob& job, const VolumeLayout& layout);
 
 /// Rows of a node times its albedo's share, term after term and band after band.
 void scale_rows(glm::vec3 share, std::size_t bands, std::size_t cells, std::span<float> rows);
+
+/// The attenuated light of all nodes, as rows and for walks.
+struct LitNodes {
+    std::vector<formats::SparseRow> row;
+    DepthTable depths;
+};
+
+/// Follows it from the sky to each node: rows V, not yet shared out, and depths toward the coarse
+/// cells. Counts `rays`. The same bits for any number of threads; incomplete if the context is
+/// cancelled.
+LitNodes light_nodes(const VolumeJob& job, const PlacedNodes& nodes, const Context& context,
+                     std::uint64_t& rays);
 
 }  // namespace opaline::bake

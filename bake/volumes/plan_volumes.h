@@ -8,7 +8,7 @@
 
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knobs.h"
-#include "bake/volumes/volume_method.h"
+#include "bake/volumes/volume_effects.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 

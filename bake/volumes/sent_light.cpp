@@ -9,7 +9,7 @@
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
 #include "bake/path_differentials/disk_map.h"
-#include "bake/receivers/receiver_key.h"
+#include "bake/receivers/receiver.h"
 #include "bake/volumes/bake_volumes.h"
 #include "bake/volumes/scattering_points.h"
 #include "formats/opal/cubemap.h"

@@ -6,8 +6,8 @@
 
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/attenuation.h"
 #include "bake/volumes/density_space.h"
-#include "bake/volumes/light_cells.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/plan_volumes.h"
 #include "formats/opal/volumes.h"

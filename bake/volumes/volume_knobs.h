@@ -8,7 +8,6 @@
 #include "bake/plan/knob.h"
 #include "bake/volumes/degree_rate.h"
 #include "bake/volumes/volume_effects.h"
-#include "bake/volumes/volume_method.h"
 
 namespace opaline::bake {
 

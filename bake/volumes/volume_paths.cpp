@@ -8,11 +8,9 @@
 
 #include "bake/base/rng.h"
 #include "bake/path_integral/path_estimate.h"
-#include "bake/path_integral/probe_depth.h"
 #include "bake/path_integral/quasi_path.h"
 #include "bake/path_integral/turn.h"
 #include "bake/scattering/poisson_phase.h"
-#include "bake/volumes/path_medium.h"
 #include "bake/volumes/walk_parts.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "formats/opal/volumes.h"

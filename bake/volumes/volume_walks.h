@@ -7,7 +7,6 @@
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/attenuation.h"
 #include "bake/volumes/density_space.h"
-#include "bake/volumes/light_cells.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/seen_surfaces.h"
 

@@ -5,10 +5,8 @@
 #include <limits>
 
 #include "bake/path_integral/path_estimate.h"
-#include "bake/path_integral/probe_depth.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
-#include "bake/volumes/path_medium.h"
 #include "bake/volumes/place_nodes.h"
 #include "bake/volumes/sent_light.h"
 #include "bake/volumes/volume_knobs.h"

@@ -5,19 +5,45 @@
 #include <map>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "formats/gltf/add_emission.h"
-#include "formats/gltf/add_normal_map.h"
 #include "formats/gltf/clamp_factor.h"
+#include "formats/gltf/document.h"
 #include "formats/gltf/load_texture.h"
 #include "formats/gltf/map_gloss.h"
 #include "formats/gltf/map_medium.h"
 #include "formats/gltf/map_sheet.h"
 #include "formats/gltf/map_specular_glossiness.h"
+#include "formats/gltf/share_coordinates.h"
+#include "formats/scene.h"
 
 namespace opaline::formats::gltf {
-
 namespace {
+
+// Material::normal_image with its scale: `normalTexture`. Comes after the material's other
+// textures, which decide on its coordinates: one that is mapped otherwise is left out. `remarks`
+// gets one sentence for each property that differs from the file; `where` names the material.
+void add_normal_map(const MaterialSource& source, const std::string& where, TextureLoader& loader,
+                    Material& material, std::vector<std::string>& remarks) {
+    constexpr double kMostScale = 1e3;  // far steeper than any surface
+    const TextureUse& use = source.normal_texture;
+    if (use.texture == kNone) {
+        return;
+    }
+    if (!share_coordinates(source, use, material)) {
+        remarks.emplace_back(
+            "normalTexture is mapped otherwise than the material's other textures: it is not used "
+            "(give all the same texCoord and KHR_texture_transform)");
+        return;
+    }
+    const LoadedTexture loaded = loader.load(use.texture, where);
+    material.normal_image = loaded.image;
+    material.normal_wrap_u = loaded.wrap_u;
+    material.normal_wrap_v = loaded.wrap_v;
+    material.normal_scale = static_cast<float>(clamp_factor(
+        source.normal_scale, -kMostScale, kMostScale, "the scale of normalTexture", remarks));
+}
 
 /// The meaning of an extension that is not simulated.
 std::string unsimulated_extension(const std::string& name) {

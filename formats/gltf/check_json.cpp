@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "formats/gltf/named_object.h"
+#include "formats/gltf/report.h"
 
 namespace opaline::formats::gltf {
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "formats/gltf/named_object.h"
+#include "formats/gltf/report.h"
 
 namespace opaline::formats::gltf {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "formats/gltf/document.h"
-#include "formats/gltf/named_object.h"
+#include "formats/gltf/report.h"
 
 namespace opaline::formats::gltf {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "formats/gltf/document.h"
-#include "formats/gltf/named_object.h"
+#include "formats/gltf/report.h"
 
 namespace opaline::formats::gltf {
 

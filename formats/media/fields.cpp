@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <type_traits>
 
-#include "formats/gltf/named_object.h"
+#include "formats/gltf/report.h"
 
 namespace opaline::formats::media {
 

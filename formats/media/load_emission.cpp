@@ -16,6 +16,7 @@ namespace opaline::formats {
 namespace {
 
 using gltf::in_quotes;
+
 using Color = glm::vec3;
 using Emission = SparseGrid<Color>;
 
@@ -119,6 +120,49 @@ Color to_vec3(Rgb c) {
     return {c.r, c.g, c.b};
 }
 
+using Albedos = SparseGrid<glm::vec3>;
+
+// The least and the largest albedo of voxels with density.
+struct AlbedoRange {
+    glm::vec3 least{1}, most{0};
+
+    void include(glm::vec3 albedo) {
+        least = glm::min(least, albedo);
+        most = glm::max(most, albedo);
+    }
+};
+
+float largest_of(const VdbGrid& grid) {
+    float most = 0;
+    for (const float v : grid.scalar.value) {
+        most = std::max(most, v);
+    }
+    for (const glm::vec3& v : grid.color.value) {
+        most = std::max({most, v.x, v.y, v.z});
+    }
+    return most;
+}
+
+// Density times albedo at each voxel.
+Albedos scatter(const SparseGrid<float>& density, const Resampler& albedo, AlbedoRange& range) {
+    Albedos scattering;
+    scattering.first_brick = density.first_brick;
+    scattering.extent = density.extent;
+    scattering.table = density.table;
+    scattering.value.resize(density.value.size());
+    for_bricks(density.first_brick, density.extent, [&](glm::ivec3 brick) {
+        const std::uint32_t number = density.brick_at(brick);
+        for (std::size_t i = 0; number != Albedos::kEmpty && i < Albedos::kBrickVoxels; ++i) {
+            const std::size_t at = number * Albedos::kBrickVoxels + i;
+            if (!(density.value[at] > 0)) continue;
+            const glm::vec3 own = glm::min(albedo.at(voxel_of(brick, static_cast<int>(i))), 1.0f);
+            range.include(own);
+            scattering.value[at] = density.value[at] * own;
+        }
+    });
+    return scattering;
+}
+
 }  // namespace
 
 Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file,
@@ -203,6 +247,31 @@ Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file
     if (!volume.scattering.empty()) widen(volume.scattering, both);
     volume.emission = std::move(emission);
     volume.emitter = file.stem().string();
+    return ok_status();
+}
+
+Status load_albedo(const VolumeEntry& entry, const std::filesystem::path& file,
+                   const glm::dmat4& density_space, const VdbReadOptions& reader, Volume& volume,
+                   std::vector<Diagnostic>& warnings) {
+    if (entry.albedo_grid.empty()) return ok_status();
+    const std::vector<std::string> names{entry.albedo_grid};
+    auto read = read_vdb(file, names, reader);
+    if (!read) return std::move(read).error();
+    const VdbGrid& grid = read->front();
+    warn_of_repairs(file, grid, warnings);
+    if (!(largest_of(grid) <= 1 + media::kAlbedoRounding)) {
+        return make_error(ErrorKind::bad_input, file.string(),
+                          "grid " + gltf::in_quotes(entry.albedo_grid), "it holds albedos above 1",
+                          "scale it to 0 ... 1");
+    }
+    const Resampler albedo(grid, density_space);
+    warn_of_lost_detail(file, albedo, warnings);
+    AlbedoRange range;
+    Albedos scattering = scatter(volume.density, albedo, range);
+    volume.albedo = {range.most.x, range.most.y, range.most.z};
+    if (range.least != range.most) {
+        volume.scattering = std::move(scattering);
+    }
     return ok_status();
 }
 

@@ -10,6 +10,17 @@
 
 namespace opaline::formats {
 
+/// Reads the grid of albedos that an entry names for a volume, if any: sets `volume.scattering` and
+/// `volume.albedo`, to the largest of each band; where all voxels with density have one albedo,
+/// that alone. `volume` has its density already, whose transform in its file is `density_space`. A
+/// grid of another transform is sampled at the voxels of the density, linear between its own; a
+/// warning says so where that loses details. Where the grid has no value the albedo is 0.
+///
+/// Errors, `bad_input`: those of read_vdb, and albedos above 1 by more than rounding.
+Status load_albedo(const VolumeEntry& entry, const std::filesystem::path& file,
+                   const glm::dmat4& density_space, const VdbReadOptions& reader, Volume& volume,
+                   std::vector<Diagnostic>& warnings);
+
 /// Reads the light of its own that an entry gives to a volume, if any: sets `volume.emission` and
 /// `volume.emitter`, and widens the tables of its other grids so that all have the same one.
 /// `volume` is complete but for these; `density_space` is the density's transform in its file.

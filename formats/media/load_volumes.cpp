@@ -13,7 +13,6 @@
 #include "formats/gltf/sha256.h"
 #include "formats/media/fill_body.h"
 #include "formats/media/limits.h"
-#include "formats/media/load_albedo.h"
 #include "formats/media/load_emission.h"
 #include "formats/media/resampler.h"
 #include "formats/media/split_absorption.h"

@@ -1,6 +1,9 @@
 #include "formats/media/read_material.h"
 
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "formats/gltf/decode_image8.h"
@@ -8,16 +11,73 @@
 #include "formats/media/limits.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/media/presets.h"
-#include "formats/media/read_marble.h"
 #include "formats/media/read_phase.h"
-#include "formats/media/read_sheet.h"
+#include "formats/scene.h"
 
 namespace opaline::formats::media {
-
 namespace {
 
 using gltf::in_quotes;
 using gltf::Report;
+
+// The member `thin_walled` of a material, an object with `reflect` and `transmit`, at least one of
+// them, whose sum is at most 1 in each channel. Nothing if it is absent or faulty; then the report
+// has the fault.
+std::optional<Sheet> read_sheet(const Fields& material) {
+    const char* const example =
+        "give an object such as {\"reflect\": [0.1, 0.2, 0.05], \"transmit\": [0.2, 0.4, 0.05]}";
+    const auto found = object_in(material, "thin_walled", example);
+    if (!found) {
+        return std::nullopt;
+    }
+    const Fields& fields = *found;
+    refuse_unknown_keys(fields, {"reflect", "transmit"});
+    if (!has(fields, "reflect") && !has(fields, "transmit")) {
+        return material.report.fail(fields.where, "it has neither reflect nor transmit", example);
+    }
+    const Sheet sheet{rgb(fields, "reflect", 0, 1).value_or(Rgb{}),
+                      rgb(fields, "transmit", 0, 1).value_or(Rgb{})};
+    constexpr float kRounding = 1e-6f;
+    const Rgb sum = sheet.reflect + sheet.transmit;
+    if (std::max({sum.r, sum.g, sum.b}) > 1 + kRounding) {
+        return material.report.fail(
+            fields.where, "reflect and transmit together exceed 1 in a channel",
+            "lower one of them: a surface scatters no more light than it receives");
+    }
+    return sheet;
+}
+
+// Veins, and whether they act inside the medium or on the light that leaves.
+struct PlacedMarble {
+    Marble marble;
+    bool is_inside = false;
+};
+
+/// Most of the stone is white: only near a vein does the colour change.
+const std::vector<Rgb>& default_colors() {
+    static const std::vector<Rgb> kColors = {
+        {0.30f, 0.30f, 0.32f}, {0.66f, 0.65f, 0.64f}, {0.9f, 0.89f, 0.87f}, {1, 1, 1}, {1, 1, 1}};
+    return kColors;
+}
+
+// The member `marble` of a material, an object with `scale` [m], `colors` and `inside`, all of
+// which have defaults: grey veins in white stone, 40 mm apart, on the light that leaves. Nothing
+// if it is absent or faulty; then the report has the fault.
+std::optional<PlacedMarble> read_marble(const Fields& material) {
+    const auto found = object_in(material, "marble", "give an object such as {\"scale\": 0.04}");
+    if (!found) {
+        return std::nullopt;
+    }
+    const Fields& fields = *found;
+    refuse_unknown_keys(fields, {"scale", "colors", "inside"});
+    PlacedMarble placed;
+    Marble& marble = placed.marble;
+    number(fields, "scale", kMinMarbleScale, kMaxMarbleScale, marble.scale);
+    marble.colors =
+        rgb_list(fields, "colors", 2, kMaxMarbleColors, 0, 1).value_or(default_colors());
+    placed.is_inside = truth(fields, "inside").value_or(false);
+    return placed;
+}
 
 bool is_black(Rgb c) {
     return c == Rgb{};

@@ -10,7 +10,7 @@
 
 #include "formats/opal/clouds.h"
 #include "formats/opal/emitters.h"
-#include "formats/opal/gloss.h"
+#include "formats/opal/gloss_model.h"
 #include "formats/opal/holes.h"
 #include "formats/opal/normal_maps.h"
 #include "formats/opal/openness.h"

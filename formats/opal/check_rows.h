@@ -3,10 +3,26 @@
 #include <cstdint>
 #include <string>
 
+#include "formats/opal/asset.h"
 #include "formats/opal/fault.h"
 #include "formats/opal/sparse_rows.h"
 
 namespace opaline::formats {
+
+/// What a reader of holes relies on without further checks: records of primitives and images that
+/// exist, in their order, none twice; alpha of all vertices or of none. No holes are fine.
+/// Precondition: primitives are sound.
+Fault find_holes_fault(const AssetView& asset);
+
+/// What a sound baker never writes: alpha of vertices that is not in [0, 1].
+Fault find_hole_value_fault(const HolesView& holes);
+
+/// What is wrong with the light of volumes; empty if nothing is. Numbers, orders and parts,
+/// whatever the values. Precondition: volumes and emitters passed their own checks.
+Fault find_glow_fault(const AssetView& asset);
+
+/// Values: not finite.
+Fault find_glow_value_fault(const GlowView& glow);
 
 /// True where the range first .. first + count - 1 lies in an array of `size` values.
 constexpr bool lies_inside(std::uint64_t first, std::uint64_t count, std::uint64_t size) {

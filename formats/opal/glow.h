@@ -29,7 +29,7 @@ struct GlowView {
     std::span<const GlowRecord> record;    ///< by volume, then emitter; no pair twice
     std::span<const std::uint32_t> brick;  ///< numbers of bricks that glow, counted from the
                                            ///< volume's first one; ascending within a record
-    std::span<const std::uint32_t> code;   ///< 512 a brick, x fastest: shared_exponent.h
+    std::span<const std::uint32_t> code;   ///< 512 a brick, x fastest: half.h
     std::span<const std::uint16_t> value;  ///< halves: R, G, B of term after term, node after node
 
     bool empty() const { return record.empty(); }

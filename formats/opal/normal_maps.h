@@ -28,7 +28,7 @@ static_assert(sizeof(NormalMapRecord) == 32);
 
 /// Where the image of a vertex points. Every code means something.
 struct Tangent {
-    std::int16_t p = 0, q = 0;  ///< octahedral (octahedral.h), in steps of 1 / 32767
+    std::int16_t p = 0, q = 0;  ///< octahedral (vec3.h), in steps of 1 / 32767
     std::int16_t sign = 0;      ///< 32767, or -32767 where the image is mirrored; 0: no tangent
     std::uint16_t reserved = 0;
 };

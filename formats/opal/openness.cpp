@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "formats/opal/octahedral.h"
+#include "formats/opal/vec3.h"
 
 namespace opaline::formats {
 namespace {

@@ -8,15 +8,10 @@
 #include <utility>
 
 #include "formats/opal/check_opal.h"
-#include "formats/opal/cloud_arrays.h"
 #include "formats/opal/cubemap.h"
-#include "formats/opal/emitter_arrays.h"
-#include "formats/opal/glow_arrays.h"
 #include "formats/opal/layout.h"
-#include "formats/opal/row_arrays.h"
-#include "formats/opal/section_cursor.h"
+#include "formats/opal/section_arrays.h"
 #include "formats/opal/sheet_shares.h"
-#include "formats/opal/volume_arrays.h"
 
 namespace opaline::formats {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "formats/opal/section_cursor.h"
+#include "formats/opal/section_arrays.h"
 
 namespace opaline::formats {
 namespace {

@@ -76,7 +76,7 @@ struct VolumesView {
     std::span<const std::uint32_t> corner;   ///< nodes of a volume, counted from its first one, or
                                              ///< kNoNode; brick after brick, x fastest
     std::span<const NodeVoxel> node;         ///< (i, j, k) of each node
-    std::span<const float> phase;            ///< kPhaseEntries a volume: p', see phase_table.h
+    std::span<const float> phase;            ///< kPhaseEntries a volume: p', see ball_bank.h
     SparseRowsView rows;                     ///< terms() rows a node
     GlowView glow;                           ///< light of their own; empty without any
 

@@ -4,16 +4,11 @@
 #include <cassert>
 #include <vector>
 
-#include "formats/opal/cloud_arrays.h"
-#include "formats/opal/emitter_arrays.h"
-#include "formats/opal/glow_arrays.h"
 #include "formats/opal/layout.h"
 #include "formats/opal/receiver_errors.h"
-#include "formats/opal/row_arrays.h"
 #include "formats/opal/section.h"
+#include "formats/opal/section_arrays.h"
 #include "formats/opal/sheet_shares.h"
-#include "formats/opal/stored_section.h"
-#include "formats/opal/volume_arrays.h"
 
 namespace opaline::formats {
 namespace {

@@ -17,7 +17,7 @@
 
 #include "formats/vdb/decode_vdb.h"
 #include "formats/vdb/reader_process.h"
-#include "formats/vdb/reply_writer.h"
+#include "formats/vdb/reply.h"
 
 namespace opaline::formats {
 namespace {

@@ -4,8 +4,7 @@
 #include <span>
 #include <string>
 
-#include "formats/vdb/reply_format.h"
-#include "formats/vdb/reply_writer.h"
+#include "formats/vdb/reply.h"
 
 namespace opaline::formats::vdb {
 

@@ -6,8 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "formats/vdb/reply_format.h"
-#include "formats/vdb/reply_writer.h"
+#include "formats/vdb/reply.h"
 
 namespace opaline::formats::vdb {
 

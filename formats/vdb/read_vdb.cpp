@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "formats/vdb/limits.h"
-#include "formats/vdb/parse_reply.h"
 #include "formats/vdb/reader_process.h"
+#include "formats/vdb/reply.h"
 
 namespace opaline::formats {
 namespace {

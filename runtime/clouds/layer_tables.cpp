@@ -5,7 +5,7 @@
 #include <numbers>
 #include <span>
 
-#include "runtime/clouds/single_scattering.h"
+#include "runtime/clouds/slab_source.h"
 
 namespace opaline::runtime {
 namespace {

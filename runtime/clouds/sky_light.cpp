@@ -6,7 +6,6 @@
 #include <numbers>
 #include <optional>
 
-#include "runtime/clouds/map_cells.h"
 #include "runtime/clouds/map_peak.h"
 
 namespace opaline::runtime {

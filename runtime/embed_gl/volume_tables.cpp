@@ -8,7 +8,7 @@
 #include "runtime/parallel.h"
 #include "runtime/volumes/sun_phase.h"
 #include "runtime/volumes/suns.h"
-#include "runtime/volumes/volume_glow.h"
+#include "runtime/volumes/volume_lattice.h"
 
 namespace opaline::runtime {
 namespace {

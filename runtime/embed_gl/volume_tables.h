@@ -30,7 +30,7 @@ std::vector<std::uint32_t> pack_density(const formats::VolumesView& volumes);
 
 /// Light that volumes send out by themselves: for each brick of all volumes the first of its words,
 /// or formats::kNoBrick; then 9 x 9 x 9 words of each brick around which any is, x fastest,
-/// shared_exponent.h. Empty without any.
+/// half.h. Empty without any.
 std::vector<std::uint32_t> pack_glow(const formats::VolumesView& volumes);
 
 /// The most terms of a node of any volume, suns left out; at least 1.

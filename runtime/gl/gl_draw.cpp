@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "runtime/gl/gl_volume_pass.h"
-#include "runtime/picture/passes.h"
+#include "runtime/picture/picture.h"
 #include "shader_text.h"
 
 namespace opaline::runtime {

@@ -42,7 +42,7 @@ struct Tile {
     std::uint32_t x = 0, y = 0, width = 0, height = 0;
 };
 
-/// The passes of the picture (passes.h), then the box filter. The two of volumes are one:
+/// The passes of the picture (picture.h), then the box filter. The two of volumes are one:
 /// gl_volume_pass.h. A layer covers the background, which is left out then.
 void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawTarget& target,
                const Tile& tile);

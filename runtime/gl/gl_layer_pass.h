@@ -11,7 +11,7 @@ struct LayerPrograms {
     GlProgram see;             ///< along the rays of corners and of samples
     GlProgram smooth, spread;  ///< which pixels corners do for; to their samples
 };
-/// For layers.defines; `sheet`: write what volumes need of the layer (clouds/layer_sheet.h), too.
+/// For layers.defines; `sheet`: write what volumes need of the layer (clouds/see_layer.h), too.
 /// Errors: resource. Precondition: layers.shown.
 formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers, bool sheet);
 

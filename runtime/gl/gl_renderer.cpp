@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <bit>
 #include <chrono>
+#include <cstdint>
 #include <optional>
+#include <vector>
 
+#include "formats/opal/rgb.h"
+#include "runtime/emitter_light.h"
 #include "runtime/gl/egl_context.h"
 #include "runtime/gl/gl_asset.h"
 #include "runtime/gl/gl_draw.h"
-#include "runtime/gl/gl_emitters.h"
 #include "runtime/gl/gl_environment.h"
 #include "runtime/gl/gl_layer_pass.h"
 #include "runtime/gl/gl_layers.h"
@@ -23,6 +26,19 @@ namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
+using formats::Rgb;
+
+// What the surface of each primitive sends out by itself, without its image; empty where there are
+// no emitters.
+std::vector<Rgb> own_radiances(const GlAsset& asset, const EmitterLight& light) {
+    std::vector<Rgb> own;
+    if (asset.emitters.own.empty()) return own;
+    own.reserve(asset.primitives.size());
+    for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
+        own.push_back(own_radiance(asset.emitters.view(), light, p));
+    }
+    return own;
+}
 
 // Seconds since it was made or last asked, all GL commands so far included.
 class GlClock {

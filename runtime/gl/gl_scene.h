@@ -28,7 +28,7 @@ struct DrawScene {
     std::uint32_t supersampling = 1;
     formats::TermSet terms = formats::TermSet::all;
     bool background = true;               ///< false: black
-    std::span<const formats::Rgb> own{};  ///< own_radiances (gl_emitters.h)
+    std::span<const formats::Rgb> own{};  ///< own_radiances (gl_renderer.h)
     const TurnedLights* turned = nullptr;
 };
 

@@ -29,7 +29,7 @@ struct GlVolumes {
     GlBuffer density;  ///< pack_density
     GlBuffer phase;    ///< pack_sun_tables
     /// Of a volume's own light: for each brick the first of its words or kNoBrick, then 9 x 9 x 9
-    /// words of each brick around which any is, x fastest, shared_exponent.h.
+    /// words of each brick around which any is, x fastest, half.h.
     GlBuffer glow;
     bool glows = false;  ///< whether there is any
     GlBuffer coefficient;

@@ -13,7 +13,6 @@
 #include "runtime/light_vector.h"
 #include "runtime/part_lights.h"
 #include "runtime/picture/camera.h"
-#include "runtime/picture/check_camera.h"
 #include "runtime/picture/picture.h"
 #include "runtime/specular.h"
 #include "runtime/volumes/relight_volumes.h"
@@ -50,7 +49,7 @@ struct SoftwareOptions {
 /// environment, turned by `rotation` like the light. Volumes are marched up to what a sample sees
 /// (volume_pass.h), before a black background too. A cloud layer stands with its ground between the
 /// eye and that (layer_pass.h). Depth and clipping: what is nearest, from the near plane on.
-/// Passes: passes.h.
+/// Passes: picture.h.
 ///
 /// Errors: usage (see check_camera; not one value per vertex or volume), resource (memory).
 formats::Result<Picture> render_software(const formats::AssetView& asset,

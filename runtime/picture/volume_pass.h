@@ -5,7 +5,7 @@
 
 #include "formats/opal/rgb.h"
 #include "runtime/clouds/layer_light.h"
-#include "runtime/clouds/layer_sheet.h"
+#include "runtime/clouds/see_layer.h"
 #include "runtime/picture/band.h"
 #include "runtime/picture/camera.h"
 #include "runtime/volumes/volume_march.h"
@@ -28,7 +28,7 @@ struct VolumePass {
 /// of the volumes is marched once, through its centre. Precondition: the band holds whole pixels.
 ///
 /// With a layer the ray ends at the ground too, and is marched in two parts, before and behind the
-/// sample's sheet at min(distance, end), of radiance A and transmittance T_S (layer_sheet.h):
+/// sample's sheet at min(distance, end), of radiance A and transmittance T_S (see_layer.h):
 ///
 ///     color = L_1 + T_1 (A + T_S L_2 + T_2 (color - A)).
 ///

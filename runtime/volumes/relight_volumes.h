@@ -39,7 +39,7 @@ namespace opaline::runtime {
 ///
 ///     e_js = E_s V_s^(1 + power_j albedo),
 ///
-/// a little less where V falls within the distance of points (sun_point.h).
+/// a little less where V falls within the distance of points (sun_light.h).
 struct VolumeLight {
     struct Part {
         std::uint32_t terms =

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "runtime/parallel.h"
-#include "runtime/volumes/brick_walk.h"
 #include "runtime/volumes/column_sweep.h"
+#include "runtime/volumes/volume_lattice.h"
 #include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {

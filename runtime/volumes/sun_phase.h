@@ -40,7 +40,7 @@ struct SunPhase {
     std::uint32_t terms = 1;
     std::array<float, kMaxSunTerms> power{};  ///< not below 0; the first one is 0
     std::array<float, kMaxSunTerms> mean{};   ///< of each table over the sphere [1/sr]
-    std::vector<float> table;                 ///< kPhaseEntries a term, phase_table.h [1/sr]
+    std::vector<float> table;                 ///< kPhaseEntries a term, ball_bank.h [1/sr]
 };
 
 /// Where moments and table are those of a Henyey-Greenstein function with a forward peak; of

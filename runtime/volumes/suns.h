@@ -32,7 +32,7 @@ struct SplitLight {
 /// Texels brighter than the threshold, the larger of 1/128 of the whole luminance and the ninth
 /// brightest texel, give a share of their light to a sun: 0 at the threshold, all from twice the
 /// threshold on, linear between. So both parts are continuous functions of the light. A small light
-/// fills the four texels around it (nearest_texels.h): the direction of a sun is the mean over all
+/// fills the four texels around it (integrate_discs.h): the direction of a sun is the mean over all
 /// suns less than 3 / n rad away, weighted by luminance, which is that of the light itself. Light
 /// that is not finite stays in the rest. `integral`: texel_integrals.h; n x n texels a face.
 SplitLight split_suns(std::span<const double> integral, std::uint32_t n);

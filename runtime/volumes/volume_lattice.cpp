@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "formats/opal/half.h"
+
 namespace opaline::runtime {
 namespace {
 
@@ -199,6 +201,118 @@ std::array<std::uint32_t, 8> nodes_of_cell(const VolumeLattice& lattice, std::ui
         nodes[i] = corner[((i >> 2) * side + (i >> 1 & 1)) * side + (i & 1)];
     }
     return nodes;
+}
+
+BrickWalk start_walk(const VolumeLattice& lattice, formats::Vec3 origin, formats::Vec3 direction,
+                     double begin, double end) {
+    BrickWalk walk;
+    walk.origin = index_of_point(lattice, origin);
+    walk.direction = index_of_direction(lattice, direction);
+    bool moves = false, is_finite = !std::isnan(begin) && !std::isnan(end);
+    for (std::size_t a = 0; a < 3; ++a) {
+        walk.origin[a] = walk.origin[a] / kBrickSide - lattice.record->first_brick[a];
+        walk.direction[a] /= kBrickSide;
+        is_finite = is_finite && std::isfinite(walk.origin[a]) && std::isfinite(walk.direction[a]);
+        moves = moves || walk.direction[a] != 0;
+    }
+    if (!is_finite || !moves) return walk;
+    // Cut to the slabs between the table's faces.
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double extent = lattice.record->extent[a];
+        if (walk.direction[a] == 0) {
+            if (walk.origin[a] < 0 || walk.origin[a] > extent) return walk;
+            continue;
+        }
+        const double low = -walk.origin[a] / walk.direction[a];
+        const double high = (extent - walk.origin[a]) / walk.direction[a];
+        begin = std::max(begin, std::min(low, high));
+        end = std::min(end, std::max(low, high));
+    }
+    if (!(begin < end) || !std::isfinite(begin) || !std::isfinite(end)) return walk;
+    walk.t = begin;
+    walk.end = end;
+    for (std::size_t a = 0; a < 3; ++a) {
+        const double at = walk.origin[a] + begin * walk.direction[a];
+        const double last = static_cast<double>(lattice.record->extent[a]) - 1;
+        if (!std::isfinite(at)) {
+            walk.end = walk.t;
+            return walk;
+        }
+        walk.cell[a] = static_cast<std::int32_t>(std::clamp(std::floor(at), 0.0, last));
+    }
+    return walk;
+}
+
+std::optional<BrickSpan> next_brick(const VolumeLattice& lattice, BrickWalk& walk) {
+    while (walk.t < walk.end) {
+        // The face through which the ray leaves this cell.
+        double leaves = HUGE_VAL;
+        std::size_t axis = 0;
+        for (std::size_t a = 0; a < 3; ++a) {
+            if (walk.direction[a] == 0) continue;
+            const double face = walk.cell[a] + (walk.direction[a] > 0 ? 1.0 : 0.0);
+            const double t = (face - walk.origin[a]) / walk.direction[a];
+            if (t < leaves) {
+                leaves = t;
+                axis = a;
+            }
+        }
+        const BrickSpan span{walk.t, std::min(leaves, walk.end), walk.cell};
+        walk.t = std::max(walk.t, span.end);
+        walk.cell[axis] += walk.direction[axis] > 0 ? 1 : -1;
+        if (walk.cell[axis] < 0 ||
+            static_cast<std::uint32_t>(walk.cell[axis]) >= lattice.record->extent[axis]) {
+            walk.end = walk.t;
+        }
+        if (span.begin < span.end && lattice.brick(span.cell) != formats::kNoBrick) return span;
+    }
+    return std::nullopt;
+}
+
+using formats::Rgb;
+
+VolumeGlow make_glow(const formats::VolumesView& volumes, std::size_t volume) {
+    VolumeGlow glow;
+    const formats::GlowRecord* const record = volumes.glow.own_of(volume);
+    if (record == nullptr) return glow;
+    glow.place.assign(volumes.records[volume].brick_count, kNoBrick);
+    for (std::uint32_t i = 0; i < record->brick_count; ++i) {
+        glow.place[volumes.glow.brick[record->first_brick + i]] = i;
+    }
+    glow.code = volumes.glow.code.subspan(record->first_brick * kBrickVoxels,
+                                          record->brick_count * kBrickVoxels);
+    glow.scale = record->code_scale;
+    return glow;
+}
+
+Rgb glow_at(const VolumeGlow& glow, const BrickBlock& block, std::array<float, 3> at) {
+    const auto place_of = [&](std::uint32_t brick) {
+        return brick == kNoBrick ? kNoBrick : glow.place[brick];
+    };
+    if (std::ranges::all_of(block.number, [&](auto n) { return place_of(n) == kNoBrick; })) {
+        return {};
+    }
+    std::array<std::size_t, 3> base{};
+    std::array<float, 3> upper{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        base[a] = std::min<std::size_t>(static_cast<std::size_t>(at[a]), kBrickSide - 1);
+        upper[a] = at[a] - static_cast<float>(base[a]);
+    }
+    Rgb sum;
+    for (std::size_t i = 0; i < 8; ++i) {
+        std::size_t neighbour = 0, offset = 0;
+        float weight = glow.scale;
+        for (std::size_t a = 3; a-- > 0;) {
+            const std::size_t position = base[a] + (i >> a & 1);
+            neighbour |= (position / kBrickSide) << a;
+            offset = offset * kBrickSide + position % kBrickSide;
+            weight *= (i >> a & 1) != 0 ? upper[a] : 1 - upper[a];
+        }
+        const std::uint32_t place = place_of(block.number[neighbour]);
+        if (place == kNoBrick) continue;
+        sum = sum + weight * formats::unpack_shared(glow.code[place * kBrickVoxels + offset]);
+    }
+    return sum;
 }
 
 }  // namespace opaline::runtime

@@ -5,7 +5,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
+#include "formats/opal/rgb.h"
 #include "formats/opal/vec3.h"
 #include "formats/opal/volumes.h"
 
@@ -68,5 +70,47 @@ NodeCell box_at(std::uint32_t boxes, std::array<float, 3> at);
 /// The eight nodes of a box, in the order x + 2 y + 4 z, or kNoNode.
 std::array<std::uint32_t, 8> nodes_of_cell(const VolumeLattice& lattice, std::uint32_t brick,
                                            std::uint32_t cell);
+
+/// A ray on its way through the table of a volume, brick after brick [AmanatidesWoo1987].
+/// Coordinates in bricks, from the table's lowest corner: p(t) = origin + t direction, t the
+/// distance in the world [m].
+struct BrickWalk {
+    std::array<double, 3> origin{}, direction{};
+    std::array<std::int32_t, 3> cell{};
+    double t = 0, end = 0;  ///< rest of the ray; empty if t >= end
+};
+
+/// A part of the ray within one brick that exists; begin < end, both finite.
+struct BrickSpan {
+    double begin = 0, end = 0;
+    std::array<std::int32_t, 3> cell{};
+};
+
+/// The walk of the ray between the distances `begin` and `end`, cut to the table. Nothing to walk
+/// where they do not meet, or where one of origin and direction is not finite or the direction is
+/// zero.
+BrickWalk start_walk(const VolumeLattice& lattice, formats::Vec3 origin, formats::Vec3 direction,
+                     double begin, double end);
+
+/// The next brick, and the walk moved past it. Visits each layer of the table at most once along
+/// each axis, so that a whole walk takes at most extent.x + extent.y + extent.z steps.
+std::optional<BrickSpan> next_brick(const VolumeLattice& lattice, BrickWalk& walk);
+
+/// Light that a volume sends out by itself, ready for rays.
+struct VolumeGlow {
+    std::vector<std::uint32_t> place;  ///< of each brick of the volume: its number among `code`, or
+                                       ///< kNoBrick; empty: the volume does not glow
+    std::span<const std::uint32_t> code;  ///< 512 a brick, half.h
+    float scale = 0;                      ///< of codes
+
+    bool empty() const { return place.empty(); }
+};
+
+/// Precondition: the asset passed read_opal's checks.
+VolumeGlow make_glow(const formats::VolumesView& volumes, std::size_t volume);
+
+/// Radiance per metre [W m^-3 sr^-1] of the emitter as authored, trilinear, at a point of the
+/// block's brick; `at` as density_at's. Precondition: not empty().
+formats::Rgb glow_at(const VolumeGlow& glow, const BrickBlock& block, std::array<float, 3> at);
 
 }  // namespace opaline::runtime

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "runtime/volumes/brick_walk.h"
+#include "runtime/volumes/volume_lattice.h"
 #include "runtime/volumes/volume_source.h"
 
 namespace opaline::runtime {

@@ -8,7 +8,6 @@
 #include "formats/opal/vec3.h"
 #include "formats/opal/volumes.h"
 #include "runtime/volumes/relight_volumes.h"
-#include "runtime/volumes/volume_glow.h"
 #include "runtime/volumes/volume_lattice.h"
 
 namespace opaline::runtime {

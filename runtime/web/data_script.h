@@ -5,10 +5,21 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "formats/opal/rgb.h"
 
 namespace opaline::runtime {
+
+/// An image of three 16-bit numbers a pixel, without loss, in a fraction of its bytes where it is
+/// smooth. `unpack` of page/data.js reads it.
+///
+/// Each number is predicted from those of its band to the left (a), above (b) and left above (c):
+/// a + b - c, within the range of a and b, as JPEG-LS does (ITU-T T.87, A.4.2). What is left,
+/// folded as 0, -1, 1, -2, ... to 0, 1, 2, 3, ..., stands in blocks of 16, each with four bits k
+/// before it: 15 means 16 zeros; otherwise each number is Rice's code of parameter k. The first bit
+/// of a byte is its highest. `width` [pixels] > 0.
+std::vector<std::byte> pack_image(std::span<const std::uint16_t> values, std::uint32_t width);
 
 /// A script that hands arrays to the page: browsers that open a page from a disk read scripts, but
 /// no other files.
@@ -45,7 +56,7 @@ class DataScript {
     void put_records(std::string_view name, std::span<const Record> records) {
         add(name, "u32", std::as_bytes(records));
     }
-    /// An image of values >= 0 as halves, packed (packed_image.h), times the number `name.scale`.
+    /// An image of values >= 0 as halves, packed (data_script.h), times the number `name.scale`.
     /// Halves lose their last `dropped_bits` bits: they err by 2^(dropped_bits - 12) down to 1e-9
     /// of the brightest. `width` [pixels] > 0 where there are any.
     void put_radiance(const std::string& name, std::span<const formats::Rgb> values,

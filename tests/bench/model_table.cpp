@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bake/pipeline/pipeline.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"

@@ -13,9 +13,8 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/emitters/bounce_color.h"
+#include "bake/emitters/onward_ray.h"
 #include "bake/emitters/receiver_light.h"
-#include "bake/emitters/surface_arrival.h"
 #include "bake/emitters/trace_particles.h"
 #include "formats/image/png.h"
 #include "formats/image/srgb.h"

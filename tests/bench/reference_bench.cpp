@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "bake/environment/builtin_environment.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/support/media.h"
 

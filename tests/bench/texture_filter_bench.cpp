@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "bake/reference/path_filter.h"
-#include "bake/reference/reference_image.h"
+#include "bake/reference/reference_receivers.h"
 #include "tests/bench/bench.h"
 #include "tests/support/scenes.h"
 

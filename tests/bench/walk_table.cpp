@@ -9,7 +9,7 @@
 
 #include "bake/effects/multiple/walks/site_rows.h"
 #include "bake/effects/multiple/walks/walk.h"
-#include "bake/effects/multiple/walks/walk_balls.h"
+#include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/receivers/surface_samples.h"
 #include "tests/bench/bench.h"
 #include "tests/bench/grey_cells.h"

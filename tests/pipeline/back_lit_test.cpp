@@ -2,7 +2,6 @@
 
 #include <cstdio>
 
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/support/effects.h"

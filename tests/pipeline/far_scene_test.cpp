@@ -8,7 +8,6 @@
 
 #include "bake/example/scene_parts.h"
 #include "bake/example/write_gltf.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "formats/gltf/import_gltf.h"
 #include "tests/bake/reference/reference_support.h"

@@ -8,7 +8,6 @@
 #include "bake/accuracy/error_warnings.h"
 #include "bake/effects/effects.h"
 #include "bake/reference/estimate.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "formats/opal/write_opal.h"
 #include "runtime/specular.h"

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "bake/accuracy/check_model.h"
-#include "bake/effects/multiple/rule_layers.h"
+#include "bake/effects/multiple/rule_multiple.h"
 #include "bake/reference/terms.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/bake/walks/nested_bodies.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/support/effects.h"

@@ -11,7 +11,7 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/accuracy/model_truth.h"
-#include "bake/effects/transmission/transmission_knobs.h"
+#include "bake/effects/transmission/rules_transmission.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 

@@ -4,7 +4,6 @@
 
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/rule_multiple.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/bake/reference/reference_support.h"

@@ -3,7 +3,6 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/transmission/rules_transmission.h"
-#include "bake/effects/transmission/transmission_knobs.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 

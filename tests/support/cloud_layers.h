@@ -13,7 +13,6 @@
 #include "bake/mie/forward_peak.h"
 #include "bake/mie/phase_texture.h"
 #include "bake/slab/radiance_table.h"
-#include "bake/slab/slab_table.h"
 #include "formats/opal/clouds.h"
 
 namespace opaline::test {

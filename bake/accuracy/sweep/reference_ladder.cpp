@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "bake/environment/builtin_environment.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/scene/orient_bodies.h"
 

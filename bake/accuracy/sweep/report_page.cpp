@@ -1,20 +1,28 @@
 #include "bake/accuracy/sweep/report_page.h"
 
-#include <cstdint>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/sweep/difference.h"
-#include "bake/accuracy/sweep/page_parts.h"
 #include "formats/image/png.h"
 #include "runtime/picture/tone_map.h"
 
 namespace opaline::bake {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using runtime::Picture;
+
+// What the page is made of: the files of page/ and Chart.js, put into the program by embed.cmake.
+extern const std::string_view kPageTemplate, kPageStyle, kPointsScript, kChartsScript, kPageScript,
+    kChartLibrary;
+
+using Json = nlohmann::ordered_json;
 
 formats::Result<std::string> data_uri(const formats::Image8& image) {
     const auto png = formats::encode_png(image, "report.html");
@@ -54,6 +62,21 @@ void replace_mark(std::string& page, std::string_view mark, std::string_view tex
     if (const std::size_t at = page.find(mark); at != std::string::npos) {
         page.replace(at, mark.size(), text);
     }
+}
+
+double difference_at(const Picture& picture, const Picture& truth, std::size_t i) {
+    return static_cast<double>(formats::luminance(picture.pixel[i])) -
+           static_cast<double>(formats::luminance(truth.pixel[i]));
+}
+
+double round_up(double value) {
+    const double decade = std::pow(10.0, std::floor(std::log10(value)));
+    for (const double step : {1.0, 2.0, 5.0}) {
+        if (value <= step * decade * (1 + 1e-9)) {
+            return step * decade;
+        }
+    }
+    return 10 * decade;
 }
 
 }  // namespace
@@ -118,6 +141,42 @@ formats::Result<std::string> make_report_page(const SweepResult& result,
     replace_mark(page, "/*PICTURES*/", json_for_html(pictures));
     replace_mark(page, "/*DATA*/", json_for_html(json));
     return page;
+}
+
+double difference_scale(std::span<const Picture* const> pictures, const Picture& truth) {
+    constexpr double kShown = 0.98;
+    std::vector<double> differences;
+    for (const Picture* picture : pictures) {
+        for (std::size_t i = 0; i < truth.pixel.size(); ++i) {
+            if (const double d = std::abs(difference_at(*picture, truth, i)); d > 0) {
+                differences.push_back(d);
+            }
+        }
+    }
+    if (differences.empty()) {
+        return 1.0;
+    }
+    const auto place =
+        differences.begin() +
+        static_cast<std::ptrdiff_t>(kShown * static_cast<double>(differences.size() - 1));
+    std::nth_element(differences.begin(), place, differences.end());
+    return round_up(*place);
+}
+
+formats::Image8 draw_difference(const Picture& picture, const Picture& truth, double scale) {
+    constexpr std::array<double, 3> kDarker{0, 114, 178}, kBrighter{213, 94, 0};
+    formats::Image8 image{truth.width, truth.height, {}};
+    image.rgba.reserve(4 * truth.pixel.size());
+    for (std::size_t i = 0; i < truth.pixel.size(); ++i) {
+        const double d = std::clamp(difference_at(picture, truth, i) / scale, -1.0, 1.0);
+        const std::array<double, 3>& full = d < 0 ? kDarker : kBrighter;
+        for (const double band : full) {
+            image.rgba.push_back(
+                static_cast<std::uint8_t>(std::lround(255 + std::abs(d) * (band - 255))));
+        }
+        image.rgba.push_back(255);
+    }
+    return image;
 }
 
 }  // namespace opaline::bake

@@ -4,12 +4,15 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <numbers>
 #include <utility>
 
-#include "bake/accuracy/sweep/sweep_layers.h"
 #include "bake/accuracy/volumes/see_through.h"
-#include "bake/accuracy/volumes/volume_radiance.h"
+#include "bake/accuracy/volumes/volume_error.h"
+#include "bake/layers/layer_tables.h"
 #include "formats/opal/write_opal.h"
 #include "runtime/clouds/layer_light.h"
 #include "runtime/clouds/part_environments.h"
@@ -91,6 +94,13 @@ formats::Result<runtime::Picture> draw(const formats::AssetView& asset, const Sw
     return runtime::render_software(asset, radiance, view.picture_light, {}, camera, options);
 }
 
+// Between the nodes of tables of any size; from thin to thick, and as layer_error draws them.
+constexpr std::array kDepths{0.4, 1.7, 6.3, 21.0};
+constexpr std::array kLights{0.21, 0.47, 0.83};
+constexpr std::array kViews{0.13, 0.37, 0.61, 0.91};
+constexpr unsigned kAzimuths = 5;
+constexpr std::size_t kGroup = kViews.size() * kAzimuths;
+
 }  // namespace
 
 StageGroups group_stages(const StageLog& stages, double seconds_total) {
@@ -167,6 +177,86 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
     }
     record.picture = std::move(*picture);
     return record;
+}
+
+int urgency(const SweepPoint& point) {
+    const auto stands_on = [&](Ladder ladder) {
+        return std::any_of(point.rungs.begin(), point.rungs.end(),
+                           [&](const Rung& r) { return r.ladder == ladder; });
+    };
+    const Ladder& first = point.rungs.front().ladder;
+    return stands_on(Ladder::preset)                             ? 0
+           : first.knob != nullptr && !first.knob->words.empty() ? 1
+           : first == Ladder::grid                               ? 3
+                                                                 : 2;
+}
+
+void order_points(std::vector<SweepPoint>& points,
+                  const std::function<double(const SweepPoint&)>& seconds) {
+    std::vector<std::pair<double, SweepPoint>> costed;
+    for (SweepPoint& point : points) {
+        const double cost = seconds(point);
+        costed.emplace_back(cost, std::move(point));
+    }
+    std::ranges::stable_sort(costed, {}, [](const auto& one) {
+        return std::pair{urgency(one.second), one.first};
+    });
+    points.clear();
+    for (auto& [cost, point] : costed) {
+        points.push_back(std::move(point));
+    }
+}
+
+std::vector<double> read_layer_radiance(const formats::CloudsView& clouds) {
+    std::vector<double> radiance;
+    for (const formats::LayerRecord& record : clouds.records) {
+        for (std::size_t band = 0; band < record.band.size(); ++band) {
+            const StoredTables tables = read_tables(clouds, record, band);
+            for (const double depth : kDepths) {
+                for (const double light : kLights) {
+                    for (const bool transmitted : {false, true}) {
+                        for (std::size_t i = 0; i < kGroup; ++i) {
+                            const double azimuth = std::numbers::pi / kAzimuths *
+                                                   (static_cast<double>(i % kAzimuths) + 0.4);
+                            radiance.push_back(eval_scattered(
+                                tables, depth, light, kViews[i / kAzimuths], azimuth, transmitted));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    return radiance;
+}
+
+void scale_layer_radiance(std::span<PointRecord> points) {
+    if (points.empty()) return;
+    std::vector<double> scale;
+    const std::vector<double>& first = points.front().layer_radiance;
+    for (std::size_t begin = 0; begin + kGroup <= first.size(); begin += kGroup) {
+        double square = 0;
+        for (std::size_t i = begin; i < begin + kGroup; ++i) {
+            square += first[i] * first[i] / static_cast<double>(kGroup);
+        }
+        scale.push_back(square > 0 ? 1 / std::sqrt(square) : 0);
+    }
+    for (PointRecord& point : points) {
+        for (std::size_t i = 0; i < point.layer_radiance.size(); ++i) {
+            point.layer_radiance[i] *= scale[i / kGroup];
+        }
+    }
+}
+
+void take_larger(ErrorReport& error, const LayerErrorReport& layer) {
+    if (error.receivers_checked == 0 || layer.rms_relative > error.rms_relative) {
+        error.rms_relative = layer.rms_relative;
+        std::ranges::copy(layer.ci95, error.ci95);
+        error.max_relative = layer.worst;
+    }
+    if (error.receivers_checked > 0) {
+        error.reference += "; clouds: " + layer.reference;
+    }
+    error.receivers_checked += layer.radiances_checked;
 }
 
 }  // namespace opaline::bake

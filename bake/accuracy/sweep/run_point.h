@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,11 +15,20 @@
 #include "bake/base/context.h"
 #include "bake/layers/layer_error.h"
 #include "bake/pipeline/pipeline.h"
+#include "formats/opal/clouds.h"
 #include "formats/opal/environment.h"
 #include "formats/scene.h"
 #include "runtime/picture/picture.h"
 
 namespace opaline::bake {
+
+/// 0 for presets, 1 for choices, which presets may have made, 3 for joint ladders, else 2.
+int urgency(const SweepPoint& point);
+
+/// Urgent points first, of those the cheap ones: they give the most information per second.
+/// `seconds`: predicted; asked once for each point.
+void order_points(std::vector<SweepPoint>& points,
+                  const std::function<double(const SweepPoint&)>& seconds);
 
 /// Seconds of a bake by the groups of its stages (StageReport::group), in the order in which they
 /// first ran.
@@ -79,5 +89,18 @@ struct SweepView {
 formats::Result<PointRecord> run_point(const EffectTable& effects, const formats::Scene& scene,
                                        const SweepPoint& point, const SweepView& view,
                                        const SweepLights& lights, const Context& context);
+
+/// Radiance of the light that a layer's droplets scatter [1/sr], per irradiance facing the light,
+/// as its tables give it: at optical depths, lights, views, azimuths, sides and bands that are the
+/// same for all bakes. Of all layers; places of one group (depth, light, side, band) follow each
+/// other.
+std::vector<double> read_layer_radiance(const formats::CloudsView& clouds);
+
+/// Divides the layers' radiances of all points by the RMS of their group in the first one: groups
+/// then count alike, as they do in LayerErrorReport. Precondition: of the same scene.
+void scale_layer_radiance(std::span<PointRecord> points);
+
+/// A bake's error is the larger one, of surfaces and volumes or of its layer.
+void take_larger(ErrorReport& error, const LayerErrorReport& layer);
 
 }  // namespace opaline::bake

@@ -11,8 +11,7 @@
 #include <utility>
 
 #include "bake/accuracy/sweep/finest.h"
-#include "bake/accuracy/sweep/point_order.h"
-#include "bake/accuracy/sweep/sweep_layers.h"
+#include "bake/accuracy/sweep/run_point.h"
 #include "bake/accuracy/sweep/trace_for.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/emitters/plan_emitters.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bake/accuracy/volumes/volume_lights.h"
+#include "bake/accuracy/volumes/volume_probes.h"
 #include "formats/opal/rgb.h"
 #include "runtime/light_vector.h"
 #include "runtime/volumes/relight_volumes.h"

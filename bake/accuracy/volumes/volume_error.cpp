@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "bake/accuracy/model_pairs.h"
 #include "bake/accuracy/volumes/see_through.h"
-#include "bake/accuracy/volumes/volume_radiance.h"
+#include "bake/accuracy/volumes/volume_probes.h"
+#include "runtime/light_vector.h"
+#include "runtime/volumes/relight_volumes.h"
+#include "runtime/volumes/volume_march.h"
 
 namespace opaline::bake {
 namespace {
@@ -104,6 +108,37 @@ MeanSquares sum_up_places(std::span<const double> luminance, std::span<const dou
     return sum_up(relative_pairs(pairs, pairs.size() / kLightPlaces));
 }
 
+// The same volumes among surfaces that neither reflect nor send out light.
+formats::Scene with_black_surfaces(const formats::Scene& scene) {
+    formats::Scene black = scene;
+    formats::Material dark;
+    dark.base_color = {0, 0, 0};
+    dark.double_sided = true;
+    std::ranges::fill(black.materials, dark);
+    black.lights.clear();
+    return black;
+}
+
+MeanSquares compare(std::span<const double> luminance, const VolumeTruth& truth) {
+    std::vector<ModelPair> pairs;
+    for (std::size_t i = 0; i < luminance.size(); ++i) {
+        const double mean = truth.luminance[i].mean.x;
+        pairs.push_back({luminance[i] - mean, mean, truth.luminance[i].variance_of_mean().x});
+    }
+    return sum_up(pairs);
+}
+
+formats::Vec3 to_vec3(glm::dvec3 v) {
+    return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+double luminance_along(const runtime::LitVolumes& lit, glm::dvec3 origin, const VolumeRay& ray) {
+    const runtime::MarchResult seen = runtime::march_volumes(
+        lit, {to_vec3(origin + glm::dvec3(ray.origin)), to_vec3(glm::dvec3(ray.direction)), 0,
+              static_cast<double>(ray.end)});
+    return static_cast<double>(formats::luminance(seen.radiance));
+}
+
 }  // namespace
 
 VolumeErrorReport compare_volumes(std::span<const double> luminance,
@@ -175,6 +210,78 @@ formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
         return truth.error();
     }
     return compare_volumes(luminance, through, *truth, options.seed);
+}
+
+formats::Result<GlowErrorReport> check_glow(const formats::Scene& scene,
+                                            const formats::AssetView& asset,
+                                            const VolumeCheckOptions& options,
+                                            const Context& context) {
+    const formats::Scene black = with_black_surfaces(scene);
+    const auto reference = make_reference_scene(black, context.threads);
+    if (!reference) {
+        return reference.error();
+    }
+    GlowErrorReport report;
+    const std::vector<VolumeProbe> probes =
+        choose_volume_probes(*reference, options.probes, options.seed);
+    if (probes.empty()) {
+        return report;
+    }
+    const std::vector<double> luminance =
+        march_glow(asset.volumes, scene.origin, probes, context.threads);
+    const auto truth = trace_volume_truth(
+        *reference, probes, options.seed, options.max_events,
+        [&](const VolumeTruth& so_far) {
+            const MeanSquares sum = compare(luminance, so_far);
+            return sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative());
+        },
+        context, TermSet::emitters);
+    if (!truth) {
+        return truth.error();
+    }
+    const MeanSquares sum = compare(luminance, *truth);
+    report.rms_relative = sum.rms_relative();
+    report.bias = sum.bias();
+    report.noise = sum.noise();
+    report.rays_checked = static_cast<std::uint32_t>(luminance.size());
+    report.events = truth->events;
+    return report;
+}
+
+std::vector<double> march_glow(const formats::VolumesView& volumes, glm::dvec3 origin,
+                               std::span<const VolumeProbe> probes, unsigned threads) {
+    std::vector<double> luminance(kLightPlaces * probes.size());
+    const runtime::VolumeLight light = runtime::relight_volumes(
+        volumes, {}, {.terms = formats::TermSet::none, .threads = threads});
+    const runtime::LitVolumes lit = runtime::light_volumes(volumes, light);
+    for (std::size_t i = 0; i < luminance.size(); ++i) {
+        const VolumeProbe& probe = probes[i % probes.size()];
+        luminance[i] = luminance_along(lit, origin, probe.ray[i / probes.size()]);
+    }
+    return luminance;
+}
+
+std::vector<double> march_probes(const formats::VolumesView& volumes, std::uint32_t n,
+                                 glm::dvec3 origin, std::span<const VolumeProbe> probes,
+                                 unsigned threads) {
+    std::vector<double> luminance(kLightPlaces * probes.size());
+    const std::vector<formats::Environment> lights = make_volume_lights(probes);
+    for (std::size_t l = 0; l < lights.size(); ++l) {
+        const runtime::LightVector vector = runtime::project_environment(lights[l], n, {}, threads);
+        const runtime::VolumeLight lit = runtime::relight_volumes(
+            volumes, vector, {.emitters = runtime::dark_emitters(), .threads = threads});
+        const runtime::LitVolumes ready = runtime::light_volumes(volumes, lit);
+        for (std::size_t p = 0; p < probes.size(); ++p) {
+            for (std::size_t place = 0; place < kLightPlaces; ++place) {
+                if (light_number(p, probes.size(), place) != l) {
+                    continue;
+                }
+                luminance[place * probes.size() + p] =
+                    luminance_along(ready, origin, probes[p].ray[place]);
+            }
+        }
+    }
+    return luminance;
 }
 
 }  // namespace opaline::bake

@@ -6,13 +6,27 @@
 #include <string>
 #include <vector>
 
-#include "bake/accuracy/volumes/volume_truth.h"
+#include "bake/accuracy/volumes/volume_probes.h"
 #include "bake/base/context.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"
+#include "formats/opal/volumes.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// Luminance [W m^-2 sr^-1] that a finished file's volumes scatter along the rays of all probes,
+/// by the runtime's own functions: value[place * probes + probe]. `origin` moves the scene's frame
+/// to the world; `n`: texels along an edge of the file's cube map. The same bits for any number of
+/// `threads` (0: all cores).
+std::vector<double> march_probes(const formats::VolumesView& volumes, std::uint32_t n,
+                                 glm::dvec3 origin, std::span<const VolumeProbe> probes,
+                                 unsigned threads);
+
+/// Luminance of the light that volumes send out by themselves, seen directly or scattered, along
+/// the same rays, in the same order.
+std::vector<double> march_glow(const formats::VolumesView& volumes, glm::dvec3 origin,
+                               std::span<const VolumeProbe> probes, unsigned threads);
 
 /// Error of a finished file's volumes: luminance that they scatter, and let pass, along rays, by
 /// the runtime's march, against path tracing. Model and numbers err together. The noise of the
@@ -65,5 +79,23 @@ formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
                                                  const formats::AssetView& asset,
                                                  const VolumeCheckOptions& options,
                                                  const Context& context);
+
+/// Error of the light that volumes send out by themselves: luminance along rays, seen directly and
+/// scattered, by the runtime's march, against path tracing.
+struct GlowErrorReport {
+    double rms_relative = 0;         ///< RMS of the error over that of the truth, noise subtracted
+    double bias = 0;                 ///< mean difference over mean truth
+    double noise = 0;                ///< RMS standard error of the truth over its RMS
+    std::uint32_t rays_checked = 0;  ///< 0: nothing was checked
+    std::uint64_t events = 0;        ///< of all paths
+};
+
+/// The volumes of `asset`, baked from `scene`, through the rays of its check (check_volumes).
+/// Surfaces are black on both sides. The same bits for any number of threads. Errors: resource,
+/// interrupted.
+formats::Result<GlowErrorReport> check_glow(const formats::Scene& scene,
+                                            const formats::AssetView& asset,
+                                            const VolumeCheckOptions& options,
+                                            const Context& context);
 
 }  // namespace opaline::bake

@@ -1,20 +1,42 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
 
+#include "bake/cli/view/file_watch.h"
 #include "bake/cli/view/shown_file.h"
 #include "bake/cli/view/view_state.h"
-#include "bake/cli/view/watched_files.h"
 #include "formats/opal/result.h"
 #include "runtime/picture/picture.h"
 
 namespace opaline::cli {
+
+/// How often each file of a state has changed while it was watched.
+struct FileVersions {
+    std::uint64_t file = 0, other = 0, light = 0;
+    bool operator==(const FileVersions&) const = default;
+};
+
+/// The files of a state, looked at for changes on disk.
+class WatchedFiles {
+  public:
+    const FileVersions& versions() const { return versions_; }
+
+    /// Looks for changes, five times a second at most. Returns how many files changed.
+    std::size_t look(const ViewState& state);
+
+  private:
+    std::optional<FileWatch> file_, other_, light_;
+    FileVersions versions_;
+    std::chrono::steady_clock::time_point last_look_ = std::chrono::steady_clock::now();
+};
 
 /// What to draw. `serial` grows with every request; a version with each reading of a file that is
 /// asked for, though its name stays.

@@ -5,9 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/cli/view/dropped_file.h"
 #include "bake/cli/view/orbit_camera.h"
-#include "bake/cli/view/script_words.h"
+#include "bake/cli/view/view_script.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {

@@ -9,7 +9,7 @@
 
 #include "bake/cli/draw_frames.h"
 #include "bake/cli/error_map.h"
-#include "bake/cli/light_with_layers.h"
+#include "bake/cli/inputs.h"
 #include "bake/cli/view/coefficient_error.h"
 #include "bake/encode/shorten_rows.h"
 #include "formats/opal/emitters.h"

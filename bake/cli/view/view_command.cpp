@@ -4,14 +4,11 @@
 #include <string>
 #include <vector>
 
-#include "bake/cli/camera_options.h"
 #include "bake/cli/command.h"
-#include "bake/cli/emitter_options.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/light_with_layers.h"
-#include "bake/cli/look_options.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
+#include "bake/cli/picture_options.h"
 #include "bake/cli/view/view_script.h"
 #include "bake/cli/view/view_session.h"
 #include "runtime/terms.h"

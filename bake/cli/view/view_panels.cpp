@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "bake/cli/messages.h"
-#include "bake/cli/printable.h"
 #include "bake/cli/view/orbit_camera.h"
 
 namespace opaline::cli {

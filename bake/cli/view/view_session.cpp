@@ -10,18 +10,16 @@
 #include <optional>
 #include <utility>
 
-#include "bake/cli/exit_codes.h"
+#include "bake/cli/command.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/view/draw_thread.h"
-#include "bake/cli/view/dropped_file.h"
 #include "bake/cli/view/picture_painter.h"
 #include "bake/cli/view/render_line.h"
-#include "bake/cli/view/script_run.h"
 #include "bake/cli/view/view_input.h"
 #include "bake/cli/view/view_panels.h"
+#include "bake/cli/view/view_script.h"
 #include "bake/cli/view/view_window.h"
-#include "bake/cli/view/watched_files.h"
 #include "formats/image/png.h"
 
 namespace opaline::cli {

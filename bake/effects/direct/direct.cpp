@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/plan/add_other_light.h"
-#include "bake/plan/walk_work.h"
+#include "bake/plan/stage_work.h"
 #include "bake/receivers/other_side.h"
 #include "bake/scattering/half_space_medium.h"
 #include "bake/scene/coverage.h"
@@ -28,9 +28,9 @@ PlanEntry decide(const PlanInput& input) {
     // What rises above the horizon of a wall's back is not known.
     const double elevation = input.material.sheet ? 1 : input.subject.horizon.elevation;
     entry.bound = static_cast<double>(std::max({c.r, c.g, c.b}) * input.subject.brightest_vertex);
-    entry.bound *= !is_metal ? static_cast<double>(formats::diffuse_share(input.material))
-                             : std::min(1.0, elevation * elevation) *
-                                   input.subject.surroundings.brightest;
+    entry.bound *=
+        !is_metal ? static_cast<double>(formats::diffuse_share(input.material))
+                  : std::min(1.0, elevation * elevation) * input.subject.surroundings.brightest;
     entry.alternative = input.material.medium.has_value();
     if (entry.alternative && (!is_named(input.knobs, "direct") || input.knobs.looks_inside_media)) {
         entry.bound = 0;

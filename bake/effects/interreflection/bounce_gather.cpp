@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "bake/effects/interreflection/mirrored_rays.h"
+#include "bake/effects/interreflection/bounce_rays.h"
 
 namespace opaline::bake {
 namespace {

@@ -114,7 +114,7 @@ void add_leaving(const RowLayout& layout, std::span<const float> weight,
 }
 
 // B of points of one medium, from the rows that its effects give, without what the boundary mirrors
-// (mirrored_rays.h); and what they make of bounced light.
+// (bounce_rays.h); and what they make of bounced light.
 std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::uint32_t material,
                            std::span<const std::size_t> members) {
     constexpr std::size_t kEvenPoints = 256;

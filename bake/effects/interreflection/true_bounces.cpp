@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "bake/effects/interreflection/bounce_rays.h"
-#include "bake/effects/interreflection/mirrored_rays.h"
 #include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/transport/packet_lane.h"

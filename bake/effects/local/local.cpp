@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bake/plan/add_other_light.h"
-#include "bake/transport/banded_irradiance.h"
+#include "bake/transport/irradiance_transport.h"
 #include "formats/opal/haar.h"
 
 namespace opaline::bake {

@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
-#include "bake/effects/multiple/rule_layers.h"
+#include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
-#include "bake/effects/multiple/walk_costs.h"
 #include "bake/plan/scattered_once.h"
 #include "formats/media/mean_cosine.h"
 

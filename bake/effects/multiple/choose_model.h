@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "bake/effects/multiple/measure_models.h"
+#include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/plan/effect.h"
 

@@ -1,12 +1,22 @@
 #include "bake/effects/multiple/medium_profile.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
+#include <vector>
 
+#include "bake/base/ordered_parallel.h"
+#include "bake/effects/multiple/rule_multiple.h"
+#include "bake/effects/multiple/thin_parts.h"
+#include "bake/effects/multiple/true_multiple.h"
+#include "bake/effects/multiple/walks/true_walks.h"
+#include "bake/effects/multiple/walks/view_set.h"
 #include "bake/plan/plan_input.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/half_space_medium.h"
 #include "formats/media/mean_cosine.h"
+#include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
 namespace {
@@ -25,6 +35,88 @@ Profile make_profile(Medium::Profile kind, bool paper, double sigma_s_prime, dou
         return make_beam_diffusion(sigma_s_prime, sigma_a, eta);
     }
     return make_dipole(DipoleKind::better, sigma_s_prime, sigma_a, eta);
+}
+
+std::vector<TestLight> make_pilot_lights() {
+    constexpr std::array<glm::vec3, 3> kSuns{
+        {{0.36f, 0.48f, 0.8f}, {-0.8f, 0.6f, 0}, {0.48f, -0.36f, -0.8f}}};
+    constexpr float kSunRadius = 0.0046f;  // [rad]
+    const std::size_t texels = formats::cubemap_texels(kTruthCubemap);
+    const std::vector<double> solid_angle = formats::texel_solid_angles(kTruthCubemap);
+    std::vector<TestLight> lights(1 + kSuns.size());
+    for (TestLight& light : lights) {
+        light.smooth.assign(texels, 0.0f);
+    }
+    for (std::size_t j = 0; j < texels; ++j) {
+        lights[0].smooth[j] = static_cast<float>(solid_angle[j % solid_angle.size()]);
+    }
+    for (std::size_t s = 0; s < kSuns.size(); ++s) {
+        lights[s + 1].discs.push_back({kSuns[s], kSunRadius, std::numbers::pi});
+    }
+    return lights;
+}
+
+struct Pilot {
+    SunRays suns;
+    SmoothLights smooth;
+    WalkSpace space;
+};
+
+// Sums over receivers, views and lights; a product of two independent estimates has no noise on
+// average.
+struct PilotSquares {
+    double error = 0, truth = 0;
+    std::uint64_t rays = 0;
+};
+
+// `compare`: PilotSquares of a pilot, a point, and its number. Errors up to `noise` are 0.
+template <class Compare>
+ModelError measure(const EffectInputs& inputs, std::size_t receivers, double noise,
+                   std::uint64_t& traced, Compare&& compare) {
+    constexpr std::uint32_t kRaysPerSun = 1;
+    const std::vector<BodyPoint> points = draw_body_points(inputs, receivers);
+    const std::vector<TestLight> lights = make_pilot_lights();
+    const Pilot pilot{
+        make_sun_rays(lights, kRaysPerSun), make_smooth_lights(lights),
+        make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(), inputs.material,
+                        inputs.layout.bands() == 1, inner_materials(inputs))};
+    PilotSquares sum;
+    for_each_block_in_order(
+        points.size(), 1, inputs.context,
+        [&](Range range) {
+            return compare(pilot, points[range.begin], static_cast<std::uint32_t>(range.begin));
+        },
+        [&](Range, PilotSquares&& part) {
+            sum.error += part.error;
+            sum.truth += part.truth;
+            traced += part.rays;
+        });
+    if (!(sum.truth > 0)) {
+        return {};
+    }
+    const double error = std::sqrt(std::max(0.0, sum.error / sum.truth));
+    return {error > noise ? error : 0, static_cast<std::uint32_t>(points.size())};
+}
+
+// `seen`: of each view.
+void compare_views(const ViewSet& set, const std::vector<TwoEstimates>& seen,
+                   PilotSquares& squares) {
+    constexpr double kNormal = 0.25;  // weight of the last view, the normal
+    for (std::size_t u = 0; u < seen.size(); ++u) {
+        const double weight =
+            u + 1 == seen.size() ? kNormal : (1 - kNormal) * static_cast<double>(set.share[u][0]);
+        for (std::size_t l = 0; l < seen[u].first.size(); ++l) {
+            const auto left = [&](Luminance TwoEstimates::*by) {
+                double sum = -(seen[u].*by)[l];
+                for (std::size_t v = 0; v < seen.size(); ++v) {
+                    sum += static_cast<double>(set.share[v][0]) * (seen[v].*by)[l];
+                }
+                return sum;
+            };
+            squares.error += weight * left(&TwoEstimates::first) * left(&TwoEstimates::second);
+            squares.truth += weight * seen[u].first[l] * seen[u].second[l];
+        }
+    }
 }
 
 }  // namespace
@@ -77,6 +169,57 @@ std::uint32_t count_samples(double area, const MediumProfile& profile, double pe
     const double wanted = z > 0 ? std::ceil(per_path * area / (z * z)) : 0.0;
     return static_cast<std::uint32_t>(
         std::clamp(wanted, std::min(least, static_cast<double>(most)), static_cast<double>(most)));
+}
+
+ModelError measure_models(const EffectInputs& inputs, const MediumProfile& profile,
+                          std::uint64_t& traced) {
+    constexpr std::size_t kReceivers = 64;
+    constexpr std::uint32_t kFromEach = 512, kPoints = 256;
+    const SurfaceIntegral integral =
+        make_surface_integral(inputs.bake.scene, inputs.material, profile);
+    const auto compare = [&](const Pilot& pilot, const BodyPoint& point, std::uint32_t key) {
+        PilotSquares squares;
+        const WalkLight light{inputs.outside(), pilot.suns,
+                              pilot.smooth,     make_exit_lobe(profile.eta),
+                              profile.exit,     kFromEach};
+        const TwoEstimates walked =
+            walk_to_lights(pilot.space, light, point, {}, inputs.knobs.seed, key, squares.rays);
+        const TwoEstimates dipole = integrate_multiple(
+            integral, {inputs.bake.scene, inputs.outside(), pilot.suns, pilot.smooth, kPoints},
+            point.position, {inputs.knobs.seed, key}, squares.rays);
+        for (std::size_t l = 0; l < walked.first.size(); ++l) {
+            const double a = walked.first[l], b = walked.second[l];
+            squares.error += (dipole.first[l] - a) * (dipole.second[l] - b);
+            squares.truth += a * b;
+        }
+        return squares;
+    };
+    return measure(inputs, kReceivers, 0, traced, compare);
+}
+
+ModelError measure_views(const EffectInputs& inputs, const MediumProfile& profile,
+                         std::uint64_t& traced) {
+    constexpr std::size_t kReceivers = 16;
+    constexpr std::uint32_t kFromEach = 32;
+    constexpr double kNoise = 0.03;
+    const ViewFit fit = make_view_fit(profile.eta);
+    const auto compare = [&](const Pilot& pilot, const BodyPoint& point, std::uint32_t number) {
+        PilotSquares squares;
+        const ViewSet set = make_view_set(fit, profile.eta, point.normal, 1 + kFirstDegree);
+        std::vector<TwoEstimates> seen;
+        for (const glm::vec3& into : set.into) {
+            const WalkLight light{
+                inputs.outside(), pilot.suns, pilot.smooth, make_exit_lobe(profile.eta),
+                profile.exit,     kFromEach,  -into};
+            const auto key = static_cast<std::uint32_t>(number * set.into.size() + seen.size());
+            seen.push_back(walk_to_lights(pilot.space, light, point,
+                                          {1, false, inputs.layout.fills_crossed},
+                                          inputs.knobs.seed, key, squares.rays));
+        }
+        compare_views(set, seen, squares);
+        return squares;
+    };
+    return measure(inputs, kReceivers, kNoise, traced, compare);
 }
 
 }  // namespace opaline::bake

@@ -10,8 +10,6 @@
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
-#include "bake/effects/multiple/receiver_rows.h"
-#include "bake/effects/multiple/rule_layers.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"

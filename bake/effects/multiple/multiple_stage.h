@@ -7,6 +7,8 @@
 #include "bake/base/context.h"
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
+#include "bake/plan/dense_rows.h"
+#include "bake/plan/row_layout.h"
 #include "bake/transport/cluster_tree.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/transport/sample_transport.h"
@@ -66,5 +68,11 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
 /// one after the other. Both overwritten. Precondition: walks did not begin inside.
 void gather_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
                           std::uint32_t bands, std::span<float> rgbx, std::span<float> views);
+
+/// T_0 += T_d / (pi c_exit h_0). Where the layout has rows by view, adds the walked light to them
+/// as harmonics of the view w'. `tolerance` of the gather; `layout` and `row` of the stage's
+/// material.
+void add_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
+                       const RowLayout& layout, const DenseRow& row);
 
 }  // namespace opaline::bake

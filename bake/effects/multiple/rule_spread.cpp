@@ -95,14 +95,14 @@ PlanEntry decide_spread(const PlanInput& input) {
     return entry;
 }
 
-constexpr std::array<DecisionRule, 1> kRules{
+constexpr std::array<DecisionRule, 1> kSpreadRules{
     {{"multiple.spread", has_medium, decide_spread,
       [](const PlanEntry& entry, RowLayout& layout) { layout.at_entry = !entry.on; }}}};
 
 }  // namespace
 
 std::span<const DecisionRule> spread_rules() {
-    return kRules;
+    return kSpreadRules;
 }
 
 }  // namespace opaline::bake

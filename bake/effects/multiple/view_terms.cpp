@@ -9,7 +9,7 @@
 
 #include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/multiple_knobs.h"
-#include "bake/effects/multiple/rule_layers.h"
+#include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/walks/exit_lobe.h"
 #include "bake/effects/multiple/walks/view_fit.h"

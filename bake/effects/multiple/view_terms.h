@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bake/effects/multiple/measure_models.h"
+#include "bake/effects/multiple/medium_profile.h"
 #include "bake/plan/plan_input.h"
 
 namespace opaline::bake {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/effects/single/texel_directions.h"
+#include "bake/effects/single/light_maps.h"
 #include "bake/scattering/phase_series.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "bake/effects/transmission/transmission_knobs.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/gauss_legendre.h"
 

@@ -1,8 +1,61 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+
+#include "bake/plan/bake_plan.h"
+#include "bake/plan/knob.h"
 #include "bake/plan/plan_input.h"
+#include "bake/plan/row_layout.h"
 
 namespace opaline::bake {
+
+namespace transmission_knobs {
+inline bool is_crossed(const RowLayout&, std::span<const PlanEntry> decisions) {
+    return std::ranges::any_of(
+        decisions, [](const PlanEntry& entry) { return entry.on && entry.name == "transmission"; });
+}
+inline constexpr std::array<double, 3> kTermCounts{1, 4, 9};
+inline constexpr std::array<double, 5> kViewLadder{16, 32, 64, 256, 1024};
+inline constexpr std::array<double, 5> kViewDiagonal{32, 64, 128, 256, 512};
+inline constexpr std::array<double, 6> kViewTruths{1024, 1024, 1024, 256, 256, 256};
+}  // namespace transmission_knobs
+
+/// Views through a body from each receiver. Their light is spread over the sky between them.
+inline constexpr KnobSpec kStraightViews{
+    .name = "transmission_views",
+    .option = "--transmission-views",
+    .placeholder = "V",
+    .help =
+        "views through a medium from each receiver, along which light is followed that crosses it "
+        "unscattered; default as the quality says",
+    .lowest = 16,
+    .highest = 65536,
+    .preset = {32, 64, 256, 1024},
+    .label = "%g views through bodies",
+    .ladder = transmission_knobs::kViewLadder,
+    .diagonal = transmission_knobs::kViewDiagonal,
+    .truths = transmission_knobs::kViewTruths,
+    .theory = {.label = "views through bodies",
+               .words = "the width of what a view's light is spread over",
+               .rate = -0.5},
+    .matters = transmission_knobs::is_crossed};
+
+/// Rows of a receiver that say how light that crosses a body changes with the view; 0: by medium.
+inline constexpr KnobSpec kStraightTerms{
+    .name = "transmission_terms",
+    .option = "--transmission-terms",
+    .placeholder = "K",
+    .help =
+        "rows of a receiver for light that crosses a medium unscattered: 1, the same for all "
+        "views, 4 or 9; default: as many as the body and the quality ask for",
+    .lowest = 1,
+    .highest = 9,
+    .zero_is_auto = true,
+    .allowed = transmission_knobs::kTermCounts,
+    .preset = {0, 0, 0, 0},
+    .label = "K = %g through bodies",
+    .matters = transmission_knobs::is_crossed};
 
 /// Share of even light that crosses a ball of the medium straight, as its surface shows it on
 /// average over views: the mean of e^(-depth c') under F_t(c) c, c' the cosine c refracted.

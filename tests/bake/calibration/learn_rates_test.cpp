@@ -1,4 +1,4 @@
-#include "bake/calibration/learn_rates.h"
+#include "bake/calibration/rates_cache.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/emitters/bounce_color.h"
+#include "bake/emitters/onward_ray.h"
 
 #include <gtest/gtest.h>
 

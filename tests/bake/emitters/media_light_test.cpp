@@ -6,10 +6,8 @@
 
 #include <numbers>
 
-#include "bake/emitters/immersed_lamps.h"
 #include "bake/emitters/light_media.h"
 #include "bake/emitters/media_patches.h"
-#include "bake/emitters/series_sum.h"
 #include "tests/bake/emitters/lamp_scenes.h"
 
 namespace opaline::bake {

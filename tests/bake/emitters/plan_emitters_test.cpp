@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "bake/emitters/describe_emitters.h"
 #include "bake/emitters/emitter_knobs.h"
 #include "tests/bake/emitters/lamp_scenes.h"
 #include "tests/support/volumes.h"

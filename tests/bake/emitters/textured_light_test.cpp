@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/emitters/bounce_color.h"
 #include "bake/emitters/media_light.h"
+#include "bake/emitters/onward_ray.h"
 #include "bake/emitters/straight_light.h"
 #include "bake/scene/texture_pyramid.h"
 #include "tests/bake/emitters/lamp_scenes.h"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/environment/rasterise.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {
@@ -131,8 +130,9 @@ TEST(BuiltinEnvironment, StudioIsBoundedAndBrightestAtTheKeyLight) {
 }
 
 TEST(BuiltinEnvironment, MalformedNamesAreUsageErrorsThatListTheForms) {
-    for (const char* name : {"sun", "sun:", "sun:1", "sun:1,2,3", "sun:1,91", "sun:inf,0", "sky",
-                             "sky:1.6,10", "sky:11,10", "sky:3,0", "white:1", "black:1", "studio:2", "moon"}) {
+    for (const char* name :
+         {"sun", "sun:", "sun:1", "sun:1,2,3", "sun:1,91", "sun:inf,0", "sky", "sky:1.6,10",
+          "sky:11,10", "sky:3,0", "white:1", "black:1", "studio:2", "moon"}) {
         const auto made = make_environment(name);
         ASSERT_FALSE(made) << name;
         EXPECT_EQ(made.error().kind, formats::ErrorKind::usage);

@@ -1,4 +1,3 @@
-#include "bake/environment/rasterise.h"
 
 #include <gtest/gtest.h>
 

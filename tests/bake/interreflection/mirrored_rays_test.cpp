@@ -1,4 +1,4 @@
-#include "bake/effects/interreflection/mirrored_rays.h"
+#include "bake/effects/interreflection/bounce_rays.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/effects/interreflection/rule_textures.h"
+#include "bake/effects/interreflection/interreflection.h"
 
 #include <gtest/gtest.h>
 

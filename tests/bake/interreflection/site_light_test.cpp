@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
-#include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_gather.h"
+#include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "tests/bake/interreflection/bounce_support.h"
 

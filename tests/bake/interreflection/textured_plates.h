@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/effects/interreflection/add_bounced.h"
 #include "bake/effects/interreflection/bounce_light.h"
 #include "bake/truth/test_lights.h"
 #include "formats/opal/cubemap.h"

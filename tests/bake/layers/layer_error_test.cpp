@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/layers/stored_tables.h"
+#include "bake/layers/layer_tables.h"
 #include "tests/bake/layers/layer_support.h"
 
 namespace opaline::bake {

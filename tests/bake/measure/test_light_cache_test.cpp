@@ -1,4 +1,4 @@
-#include "bake/truth/test_light_cache.h"
+#include "bake/truth/test_lights.h"
 
 #include <gtest/gtest.h>
 

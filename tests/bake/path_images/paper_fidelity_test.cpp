@@ -3,7 +3,6 @@
 #include <numbers>
 
 #include "bake/path_images/image_lights.h"
-#include "bake/path_images/sky_view.h"
 #include "bake/path_integral/quasi_path.h"
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/phase.h"

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "bake/path_integral/grid_medium.h"
-#include "bake/path_integral/probe_depth.h"
 #include "bake/path_integral/zonal_table.h"
 #include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/phase.h"

@@ -5,7 +5,6 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/path_integral/coefficients.h"
 #include "bake/path_integral/turn.h"
 #include "bake/path_integral/volume_box.h"
 #include "formats/sparse_grid.h"

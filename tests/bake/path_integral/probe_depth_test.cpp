@@ -1,4 +1,4 @@
-#include "bake/path_integral/probe_depth.h"
+#include "bake/path_integral/path_estimate.h"
 
 #include <gtest/gtest.h>
 

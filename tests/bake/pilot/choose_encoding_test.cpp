@@ -1,4 +1,4 @@
-#include "bake/accuracy/pilot/choose_encoding.h"
+#include "bake/accuracy/pilot/pilot.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/effects/incident/rule_colour.h"
+#include "bake/effects/incident/incident.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/reference/boundary.h"
+#include "bake/reference/rough_boundary.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/reference/reference_image.h"
+#include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/reference/textured_board.h"
 

@@ -1,4 +1,3 @@
-#include "bake/reference/net_points.h"
 
 #include <gtest/gtest.h>
 

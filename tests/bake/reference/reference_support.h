@@ -11,7 +11,6 @@
 
 #include "bake/reference/estimate.h"
 #include "bake/reference/path.h"
-#include "bake/reference/reference_image.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/support/scenes.h"
 

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/reference/boundary.h"
 #include "bake/reference/ggx.h"
 #include "bake/reference/random_stream.h"
 #include "tests/bake/reference/chi_square.h"

@@ -1,4 +1,4 @@
-#include "bake/rows/rows_of_points.h"
+#include "bake/rows/gather_rows.h"
 
 #include <gtest/gtest.h>
 

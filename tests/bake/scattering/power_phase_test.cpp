@@ -1,4 +1,3 @@
-#include "bake/scattering/power_phase.h"
 
 #include <gtest/gtest.h>
 

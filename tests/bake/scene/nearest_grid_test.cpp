@@ -1,4 +1,4 @@
-#include "bake/scene/nearest_grid.h"
+#include "bake/scene/nearest_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,6 @@
 
 #include "bake/effects/single/gather_direction.h"
 #include "bake/effects/single/inner_triangles.h"
-#include "bake/effects/single/texel_directions.h"
 #include "tests/bake/single/single_support.h"
 
 namespace opaline::bake {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/slab/fit_column_model.h"
 #include "tests/bake/slab/slab_support.h"
 #include "tests/support/cloud_table.h"
 

@@ -1,4 +1,3 @@
-#include "bake/slab/once_fluxes.h"
 
 #include <gtest/gtest.h>
 

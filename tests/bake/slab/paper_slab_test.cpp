@@ -12,7 +12,7 @@
 #include "bake/mie/droplet_optics.h"
 #include "bake/mie/forward_peak.h"
 #include "bake/mie/refractive_index.h"
-#include "bake/slab/fit_column_model.h"
+#include "bake/slab/column_model.h"
 #include "bake/slab/low_orders.h"
 #include "bake/slab/radiance_table.h"
 #include "bake/slab/slab_walk.h"

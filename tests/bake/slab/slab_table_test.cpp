@@ -1,4 +1,4 @@
-#include "bake/slab/slab_table.h"
+#include "bake/slab/radiance_table.h"
 
 #include <gtest/gtest.h>
 

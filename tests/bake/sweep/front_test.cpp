@@ -1,4 +1,4 @@
-#include "bake/accuracy/sweep/front.h"
+#include "bake/accuracy/sweep/analysis.h"
 
 #include <gmock/gmock.h>
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "bake/accuracy/sweep/analysis.h"
-#include "bake/accuracy/sweep/sweep_layers.h"
+#include "bake/accuracy/sweep/run_point.h"
 #include "bake/accuracy/sweep/tables.h"
 #include "bake/layers/plan_layers.h"
 #include "tests/bake/layers/layer_support.h"

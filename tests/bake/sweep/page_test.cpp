@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bake/accuracy/sweep/difference.h"
 #include "bake/accuracy/sweep/report_page.h"
 #include "bake/accuracy/sweep/tables.h"
 #include "tests/support/effects.h"

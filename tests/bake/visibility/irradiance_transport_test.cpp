@@ -7,7 +7,6 @@
 #include <random>
 
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/banded_irradiance.h"
 #include "formats/opal/cubemap.h"
 #include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"

@@ -6,7 +6,6 @@
 #include "bake/receivers/kd_order.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/transport/irradiance_transport.h"
-#include "bake/transport/shared_irradiance.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/scenes.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "bake/accuracy/volumes/see_through.h"
-#include "bake/accuracy/volumes/volume_radiance.h"
 #include "bake/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 #include "tests/support/scenes.h"

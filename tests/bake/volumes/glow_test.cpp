@@ -10,7 +10,6 @@
 #include "bake/volumes/largest_light.h"
 #include "bake/volumes/volume_knobs.h"
 #include "formats/opal/half.h"
-#include "formats/opal/shared_exponent.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/bake/volumes/volume_support.h"
 

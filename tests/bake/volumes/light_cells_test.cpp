@@ -1,4 +1,4 @@
-#include "bake/volumes/light_cells.h"
+#include "bake/volumes/attenuation.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "bake/volumes/node_worth.h"
+#include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
 #include "formats/opal/detail_codes.h"
 #include "tests/bake/volumes/volume_support.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/effects/multiple/walks/find_clearance.h"
-#include "bake/effects/multiple/walks/walk_balls.h"
+#include "bake/effects/multiple/walks/find_hit.h"
+#include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/scene/triangle.h"
 #include "tests/bake/walks/nested_bodies.h"
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 
-#include "bake/effects/multiple/walks/inner_sites.h"
 #include "bake/receivers/surface_samples.h"
 #include "tests/bake/walks/body_walks.h"
 

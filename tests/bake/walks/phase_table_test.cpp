@@ -1,4 +1,4 @@
-#include "bake/effects/multiple/walks/phase_table.h"
+#include "bake/effects/multiple/walks/ball_bank.h"
 
 #include <gtest/gtest.h>
 

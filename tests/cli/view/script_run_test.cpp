@@ -1,4 +1,4 @@
-#include "bake/cli/view/script_run.h"
+#include "bake/cli/view/view_script.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
 #include "bake/cli/view/view_script.h"
-#include "bake/cli/view/dropped_file.h"
 
 #include <gmock/gmock.h>
 

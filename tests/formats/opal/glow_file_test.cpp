@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "formats/opal/shared_exponent.h"
+#include "formats/opal/half.h"
 #include "tests/formats/opal/glow_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
 

@@ -12,7 +12,6 @@
 #include "formats/opal/half.h"
 #include "formats/opal/read_opal.h"
 #include "formats/opal/receiver_errors.h"
-#include "formats/opal/shared_exponent.h"
 #include "formats/opal/sheet_shares.h"
 
 namespace opaline::formats {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "formats/opal/cubemap.h"
-#include "formats/opal/shared_exponent.h"
+#include "formats/opal/half.h"
 #include "tests/formats/opal/cloud_fixture.h"
 #include "tests/formats/opal/emitter_fixture.h"
 #include "tests/formats/opal/glow_fixture.h"

@@ -1,4 +1,3 @@
-#include "formats/vdb/parse_reply.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -8,7 +7,7 @@
 #include <random>
 
 #include "formats/vdb/limits.h"
-#include "formats/vdb/reply_writer.h"
+#include "formats/vdb/reply.h"
 #include "tests/formats/vdb/vdb_files.h"
 #include "tests/support/temporary_folder.h"
 

@@ -6,8 +6,7 @@
 
 #include "bake/slab/low_orders.h"
 #include "bake/slab/solve_radiance.h"
-#include "runtime/clouds/layer_march.h"
-#include "runtime/clouds/see_ground.h"
+#include "runtime/clouds/see_layer.h"
 #include "runtime/texture.h"
 #include "tests/runtime/clouds/lit_layer.h"
 

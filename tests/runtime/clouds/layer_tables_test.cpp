@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "bake/slab/low_orders.h"
-#include "runtime/clouds/single_scattering.h"
 #include "runtime/clouds/slab_source.h"
 #include "tests/support/cloud_layers.h"
 

@@ -1,4 +1,3 @@
-#include "runtime/clouds/light_points.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "runtime/clouds/ground_cells.h"
-#include "runtime/clouds/layer_march.h"
-#include "runtime/clouds/see_ground.h"
+#include "runtime/clouds/layer_light.h"
 #include "tests/runtime/clouds/lit_layer.h"
 
 namespace opaline::runtime {

@@ -3,7 +3,6 @@
 #include <functional>
 
 #include "formats/opal/half.h"
-#include "formats/opal/shared_exponent.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
 
 namespace opaline::test {

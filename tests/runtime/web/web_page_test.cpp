@@ -13,7 +13,6 @@
 #include "runtime/map_geometry.h"
 #include "runtime/web/data_script.h"
 #include "runtime/web/divide_light.h"
-#include "runtime/web/packed_image.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::runtime {

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <cstdint>
 #include <glm/glm.hpp>
+
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,6 +10,10 @@
 #include "bake/effects/multiple/walks/walk_space.h"
 
 namespace opaline::bake {
+
+/// Distance [m] to the nearest triangle, or `reach` [m] if that is less; smaller by a bound on
+/// rounding. Triangles without an area do not count.
+float find_clearance(const WalkSpace& space, glm::vec3 position, float reach);
 
 /// Where a straight flight meets a triangle.
 struct WalkHit {

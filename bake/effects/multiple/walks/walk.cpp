@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "bake/base/frame.h"
-#include "bake/effects/multiple/walks/find_clearance.h"
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/effects/multiple/walks/free_ball.h"
 #include "bake/effects/multiple/walks/medium_stack.h"
