@@ -93,18 +93,14 @@ struct SparseGrid {
         const glm::vec3 low = glm::floor(index);
         // Far away there is no voxel, and an int may not hold where it would be.
         constexpr float kFar = 1 << 30;
-        if (!(glm::all(glm::lessThan(glm::abs(low), glm::vec3(kFar))))) {
-            return T(0);
-        }
+        if (!(glm::all(glm::lessThan(glm::abs(low), glm::vec3(kFar))))) return T(0);
         const glm::ivec3 base(low);
         const glm::vec3 f = index - low;
         T corner[8];
         const glm::ivec3 inside = base & (kSide - 1);
         if (inside.x < kSide - 1 && inside.y < kSide - 1 && inside.z < kSide - 1) {
             const std::uint32_t number = brick_at(brick_of(base));
-            if (number == kEmpty) {
-                return T(0);
-            }
+            if (number == kEmpty) return T(0);
             const T* const v = value.data() + number * kBrickVoxels + offset_in_brick(base);
             constexpr int kRow = kSide, kSlice = kSide * kSide;
             for (int c = 0; c < 8; ++c) {

@@ -70,13 +70,9 @@ formats::Result<LitMediaError> check_lit_media(const formats::Scene& given,
     }
     const auto scene =
         make_reference_scene(without_lights ? *without_lights : given, context.threads);
-    if (!scene) {
-        return scene.error();
-    }
+    if (!scene) return scene.error();
     const std::vector<ReferenceReceiver> receivers = choose_translucent(*scene, asset, seed);
-    if (receivers.empty()) {
-        return error;
-    }
+    if (receivers.empty()) return error;
     const formats::Environment black;
     const LightSampler sky = make_light_sampler(black, glm::mat3(1.0f));
     const runtime::LightVector vector =
@@ -88,9 +84,7 @@ formats::Result<LitMediaError> check_lit_media(const formats::Scene& given,
     options.seed = seed;
     options.max_events = static_cast<std::uint64_t>(kLitMediaEvents);
     const auto check = check_light({&space, 1}, receivers, baked, options, context);
-    if (!check) {
-        return check.error();
-    }
+    if (!check) return check.error();
     const MeanSquares sum = sum_up(check->pairs);
     error.noise = sum.noise();
     error.rms_relative = std::max(sum.rms_relative(), error.noise);

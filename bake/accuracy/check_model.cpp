@@ -47,9 +47,7 @@ formats::Result<ModelErrorReport::Mirrored> check_mirrors(
         const auto check =
             check_light(std::array{PathSpace{scene, sampler, paths}}, mirrors,
                         relight_receivers(asset, mirrors, {vector, &lobes}), options, context);
-        if (!check) {
-            return check.error();
-        }
+        if (!check) return check.error();
         pairs.insert(pairs.end(), check->pairs.begin(), check->pairs.end());
     }
     ModelErrorReport::Mirrored report;
@@ -72,22 +70,16 @@ void absorb_all(formats::Volume& volume) {
 // Inside another body or behind all surfaces: invisible, and the bake uses the light of its
 // neighbours (visibility/hidden_receivers).
 bool is_buried(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
-    if (!receiver.around.empty()) {
-        return true;
-    }
+    if (!receiver.around.empty()) return true;
     for (std::uint32_t i = 0; i < 16; ++i) {
         RandomStream random(0, i, 0);
         glm::vec3 d{2 * random.next() - 1, 2 * random.next() - 1, 2 * random.next() - 1};
         d *= glm::dot(d, receiver.normal) < 0 ? -1.0f : 1.0f;
         const auto hit = scene.surfaces.closest_hit({receiver.outside}, glm::normalize(d),
                                                     std::numeric_limits<float>::infinity());
-        if (!hit || glm::dot(hit->flat, d) < 0) {
-            return false;
-        }
+        if (!hit || glm::dot(hit->flat, d) < 0) return false;
         const formats::Scene& input = scene.surfaces.scene();
-        if (input.materials[input.primitives[hit->primitive].material].double_sided) {
-            return false;
-        }
+        if (input.materials[input.primitives[hit->primitive].material].double_sided) return false;
     }
     return true;
 }
@@ -95,9 +87,7 @@ bool is_buried(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
 // An opaque surface lies close behind it in its own body, such as a floor that the body has sunk
 // into. There the bake's empty body differs from the reference's.
 bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
-    if (receiver.medium == formats::kNone) {
-        return false;
-    }
+    if (receiver.medium == formats::kNone) return false;
     constexpr float kClose = 3;  // mean free paths, in the clearest channel
     const glm::vec3 sigma_t = scene.media[receiver.medium].sigma_t;
     const auto hit = scene.surfaces.closest_hit(
@@ -111,9 +101,7 @@ bool is_pierced(const ReferenceScene& scene, const ReferenceReceiver& receiver) 
 // light scatters between. Light from below the gap has met a second surface, which bakes ignore
 // (README.md).
 bool is_folded(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
-    if (receiver.medium == formats::kNone) {
-        return false;
-    }
+    if (receiver.medium == formats::kNone) return false;
     constexpr float kThin = 1;  // mean free paths, in the clearest channel
     const glm::vec3 sigma_t = scene.media[receiver.medium].sigma_t;
     float reach = kThin / std::max(std::min({sigma_t.x, sigma_t.y, sigma_t.z}), 1e-30f);
@@ -125,9 +113,7 @@ bool is_folded(const ReferenceScene& scene, const ReferenceReceiver& receiver) {
         if (!hit || scene.medium_of[input.primitives[hit->primitive].material] != receiver.medium) {
             return false;
         }
-        if (glm::dot(hit->flat, down) < 0) {
-            return true;
-        }
+        if (glm::dot(hit->flat, down) < 0) return true;
         reach -= hit->distance;
         from = go_straight_on(from, leave_surface(*hit, down));
     }
@@ -184,14 +170,10 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
                                               const Context& context) {
     const auto start = std::chrono::steady_clock::now();
     const auto scenes = make_model_scenes(given, context.threads);
-    if (!scenes) {
-        return scenes.error();
-    }
+    if (!scenes) return scenes.error();
     std::vector<std::string> left_out;
     const auto lights = make_model_lights(given, left_out);
-    if (!lights) {
-        return lights.error();
-    }
+    if (!lights) return lights.error();
     const std::vector<ReferenceReceiver> receivers =
         choose_model_receivers(scenes->whole, options.receivers, options.seed);
     std::vector<LightCheck> checks;
@@ -201,24 +183,18 @@ formats::Result<ModelErrorReport> check_model(const formats::Scene& given,
         auto check = check_unmirrored(*scenes, light, receivers,
                                       relight_receivers(asset, receivers, {.vector = vector}),
                                       options, context);
-        if (!check) {
-            return std::move(check).error();
-        }
+        if (!check) return std::move(check).error();
         checks.push_back(std::move(*check));
     }
     ModelErrorReport report = make_model_report(checks, receivers.size(), options.seed);
     report.left_out = std::move(left_out);
     if (const auto mirrors = find_mirrors(asset, receivers); !mirrors.empty()) {
         auto mirrored = check_mirrors(scenes->whole, asset, mirrors, *lights, options, context);
-        if (!mirrored) {
-            return std::move(mirrored).error();
-        }
+        if (!mirrored) return std::move(mirrored).error();
         report.mirrored = *mirrored;
     }
     auto suns = check_suns(*scenes, asset, receivers, options, context);
-    if (!suns) {
-        return std::move(suns).error();
-    }
+    if (!suns) return std::move(suns).error();
     report.suns = *suns;
     report.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -229,9 +205,7 @@ formats::Result<ModelScenes> make_model_scenes(const formats::Scene& scene, unsi
     const OrientedBodies bodies = orient_bodies(scene);
     auto facing = std::make_unique<formats::Scene>(bodies.scene ? *bodies.scene : scene);
     auto whole = make_reference_scene(*facing, threads);
-    if (!whole) {
-        return std::move(whole).error();
-    }
+    if (!whole) return std::move(whole).error();
     if (scene.volumes.empty()) {
         return ModelScenes{std::move(facing), nullptr, std::move(*whole), std::nullopt};
     }
@@ -240,9 +214,7 @@ formats::Result<ModelScenes> make_model_scenes(const formats::Scene& scene, unsi
         absorb_all(volume);
     }
     auto held = make_reference_scene(*absorbing, threads);
-    if (!held) {
-        return std::move(held).error();
-    }
+    if (!held) return std::move(held).error();
     return ModelScenes{std::move(facing), std::move(absorbing), std::move(*whole),
                        std::move(*held)};
 }

@@ -101,9 +101,7 @@ class SunTracer {
   private:
     void add(const PathSample& sample, SunTallies& tallies) const {
         const glm::vec3 w = sample.sky;
-        if (w == glm::vec3(0)) {
-            return;
-        }
+        if (w == glm::vec3(0)) return;
         for (std::uint32_t s = 0; s < kSuns; ++s) {
             if (glm::dot(direction_[s], sample.to_sky) > cosine_) {
                 const auto light = static_cast<double>(formats::luminance({w.x, w.y, w.z}));
@@ -138,9 +136,7 @@ formats::Result<std::optional<ModelErrorReport::Suns>> check_suns(
     std::span<const ReferenceReceiver> receivers, const ModelCheckOptions& options,
     const Context& context) {
     const std::vector<ReferenceReceiver> refracting = find_refracting(scenes.held(), receivers);
-    if (refracting.empty()) {
-        return std::optional<Suns>();
-    }
+    if (refracting.empty()) return std::optional<Suns>();
     const SunTracer tracer(scenes, options);
     std::vector<SunTallies> traced(refracting.size());
     const auto trace = [&](std::uint32_t first_group, std::uint32_t groups) {

@@ -47,9 +47,7 @@ MeasuredError measure(std::span<const EffectCheck> checks, std::span<const std::
                       std::uint64_t seed, Predicate&& wanted) {
     MeasuredError measured;
     const std::vector<CheckedPair> pairs = collect_pairs(checks, wanted);
-    if (pairs.empty()) {
-        return measured;
-    }
+    if (pairs.empty()) return measured;
     for (const std::string& effect : name_effects(checks)) {
         const std::vector<CheckedPair> own = collect_pairs(checks, [&](const EffectCheck& check) {
             return wanted(check) && check.effect == effect;
@@ -90,9 +88,7 @@ std::string describe_reference(std::span<const EffectCheck> checks,
 std::uint32_t find_worst_between(std::span<const EffectCheck> checks, std::size_t lights) {
     std::map<std::uint32_t, double> squares;  // of the error, by primitive
     for (const EffectCheck& check : checks) {
-        if (!check.between) {
-            continue;
-        }
+        if (!check.between) continue;
         for (std::size_t i = 0; i < check.pairs.size(); ++i) {
             squares[check.primitive[i / lights]] +=
                 check.pairs[i].error[0] * check.pairs[i].error[1];
@@ -106,9 +102,7 @@ std::uint32_t find_worst_between(std::span<const EffectCheck> checks, std::size_
 
 // Toward the eye inside the medium; 0 along the normal.
 glm::vec3 seen_inside(const SubjectTruth& truth, const CheckPoint& point) {
-    if (point.to_eye == glm::vec3(0)) {
-        return point.to_eye;
-    }
+    if (point.to_eye == glm::vec3(0)) return point.to_eye;
     const float eta = truth.parts.front().inputs.medium().eta;
     const float cosine = glm::dot(point.body.normal, point.to_eye);
     const auto inside =
@@ -260,9 +254,7 @@ ErrorReport summarise_checks(std::span<const EffectCheck> checks,
     };
     const std::vector<CheckedPair> all =
         collect_pairs(checks, [](const EffectCheck&) { return true; });
-    if (all.empty()) {
-        return report;
-    }
+    if (all.empty()) return report;
     static_cast<MeasuredError&>(report) =
         measure(checks, lights, seed, [](const EffectCheck&) { return true; });
     report.at_receivers =

@@ -32,9 +32,7 @@ formats::Result<double> measure_missing(const PathSpace& space,
         other.options.crossed = CrossedLight::alone;
     }
     const auto estimate = estimate_luminance(other, receivers, wanted, context);
-    if (!estimate) {
-        return estimate.error();
-    }
+    if (!estimate) return estimate.error();
     double sum = 0;
     for (const Moments& m : estimate->pixel) {
         sum += m.mean.x;
@@ -119,9 +117,7 @@ formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
                                         const ModelCheckOptions& options, const Context& context) {
     LightCheck check;
     check.pairs.resize(receivers.size());
-    if (receivers.empty()) {
-        return check;
-    }
+    if (receivers.empty()) return check;
     std::vector<std::vector<Moments>> moments(spaces.size(),
                                               std::vector<Moments>(receivers.size()));
     std::uint64_t events = 0;
@@ -133,9 +129,7 @@ formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
         for (std::size_t s = 0; s < spaces.size(); ++s) {
             wanted.seed = seed_of_space(options.seed, s);
             const auto estimate = estimate_luminance(spaces[s], receivers, wanted, context);
-            if (!estimate) {
-                return estimate.error();
-            }
+            if (!estimate) return estimate.error();
             events += estimate->events;
             for (std::size_t i = 0; i < receivers.size(); ++i) {
                 moments[s][i].merge(estimate->pixel[i]);
@@ -157,9 +151,7 @@ formats::Result<LightCheck> check_light(std::span<const PathSpace> spaces,
         const double affordable = done * static_cast<double>(options.max_events) /
                                   static_cast<double>(std::max<std::uint64_t>(events, 1));
         wanted.samples = static_cast<std::uint32_t>(std::clamp(affordable - done, 0.0, done));
-        if (wanted.samples < check.samples / 8 + 1) {
-            return check;
-        }
+        if (wanted.samples < check.samples / 8 + 1) return check;
     }
 }
 
@@ -171,9 +163,7 @@ formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const Mo
     const LightSampler sampler = make_light_sampler(light.environment, glm::mat3(1.0f));
     const std::vector<PathSpace> held = held_light_spaces(scenes, sampler, options);
     auto check = check_light(held, receivers, baked, options, context);
-    if (!check) {
-        return check;
-    }
+    if (!check) return check;
     // Volumes send light along all kinds of paths: trace all of it, less the light that the file
     // holds.
     const bool has_volumes = scenes.without_scattering.has_value();
@@ -185,9 +175,7 @@ formats::Result<LightCheck> check_unmirrored(const ModelScenes& scenes, const Mo
     const auto missing =
         measure_missing({scenes.whole, sampler, all}, receivers,
                         has_volumes ? TermSet::none : options.simulated, wanted, context);
-    if (!missing) {
-        return missing.error();
-    }
+    if (!missing) return missing.error();
     check->light = light.name;
     check->missing = *missing;
     if (has_volumes && !receivers.empty()) {
@@ -208,9 +196,7 @@ ModelErrorReport make_model_report(std::span<const LightCheck> checks, std::size
         report.reference += " and what crosses a body unscattered";
     }
     report.receivers_checked = static_cast<std::uint32_t>(receivers);
-    if (receivers == 0) {
-        return report;
-    }
+    if (receivers == 0) return report;
     std::vector<ModelPair> pairs;  // light by light
     for (const LightCheck& check : checks) {
         const MeanSquares sum = sum_up(check.pairs);
@@ -242,15 +228,11 @@ formats::Result<std::vector<ModelLight>> make_model_lights(const formats::Scene&
     std::vector<ModelLight> lights;
     for (const char* name : published_lights()) {
         auto environment = make_environment(name);
-        if (!environment) {
-            return std::move(environment).error();
-        }
+        if (!environment) return std::move(environment).error();
         ModelLight light{name, std::move(*environment)};
         if (!with_suns && !light.environment.discs.empty()) {
             left_out.emplace_back(name);
-            if (light.environment.pixel.empty()) {
-                continue;
-            }
+            if (light.environment.pixel.empty()) continue;
             light.environment.discs.clear();
             light.name += " without its sun";
         }

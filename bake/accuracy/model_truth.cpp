@@ -13,14 +13,10 @@ formats::Result<ModelProbes> choose_model_probes(const formats::Scene& given,
                                                  const Context& context) {
     const OrientedBodies bodies = orient_bodies(given);
     const auto scene = make_reference_scene(bodies.scene ? *bodies.scene : given, context.threads);
-    if (!scene) {
-        return scene.error();
-    }
+    if (!scene) return scene.error();
     ModelProbes probes;
     auto lights = make_model_lights(given, probes.left_out);
-    if (!lights) {
-        return std::move(lights).error();
-    }
+    if (!lights) return std::move(lights).error();
     probes.lights = std::move(*lights);
     probes.receivers = choose_model_receivers(*scene, receivers, seed);
     return probes;
@@ -31,18 +27,14 @@ formats::Result<std::vector<LightCheck>> trace_model_truth(const formats::Scene&
                                                            const ModelCheckOptions& options,
                                                            const Context& context) {
     const auto scenes = make_model_scenes(given, context.threads);
-    if (!scenes) {
-        return scenes.error();
-    }
+    if (!scenes) return scenes.error();
     ModelCheckOptions alike = options;
     alike.noise_share = 0;  // of the files to come nothing is known
     const std::vector<double> black(probes.receivers.size());
     std::vector<LightCheck> truth;
     for (const ModelLight& light : probes.lights) {
         auto traced = check_unmirrored(*scenes, light, probes.receivers, black, alike, context);
-        if (!traced) {
-            return std::move(traced).error();
-        }
+        if (!traced) return std::move(traced).error();
         truth.push_back(std::move(*traced));
     }
     return truth;

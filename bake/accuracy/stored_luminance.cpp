@@ -81,9 +81,7 @@ Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point
     const std::size_t size = lights.front().coarse.size();
     std::vector<float> band(size), sum(size);
     for (std::size_t k = 0; k < point.vertex.size(); ++k) {
-        if (point.weight[k] == 0) {
-            continue;
-        }
+        if (point.weight[k] == 0) continue;
         const std::uint32_t v = point.vertex[k];
         const std::vector<float> h =
             layout.translucent ? view_from_far(layout, primitive.eta, asset.normal[v], point.view())

@@ -114,9 +114,7 @@ void turn_views(std::span<const glm::vec3> normals, std::uint64_t seed,
     constexpr float kSeen = 0.2f;
     for (CheckPoint& point : points) {
         const auto u = random_uniform(seed, RandomStage::check_points, point.key, kOfViews);
-        if (point.body.normal == glm::vec3(0) || u[0] < 0.25f) {
-            continue;
-        }
+        if (point.body.normal == glm::vec3(0) || u[0] < 0.25f) continue;
         const double cosine = std::sqrt(kLeast + (1 - kLeast) * static_cast<double>(u[1]));
         const double sine = std::sqrt(1 - cosine * cosine);
         const double azimuth = 2 * std::numbers::pi * static_cast<double>(u[2]);

@@ -36,9 +36,7 @@ inline std::vector<std::uint32_t> find_largest(std::span<const float> score, std
     for (; last > 0; --last) {
         const std::size_t here = std::size_t{histogram[0][last]} + histogram[1][last] +
                                  histogram[2][last] + histogram[3][last];
-        if (above + here > count) {
-            break;
-        }
+        if (above + here > count) break;
         above += here;
     }
     // Each is written and stays where it is one: no branch to mispredict.

@@ -70,9 +70,7 @@ std::filesystem::path rates_path() {
 
 std::optional<StageRates> read_rates(const std::filesystem::path& path, const MachineKey& machine) {
     std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored)) {
-        return std::nullopt;
-    }
+    if (!std::filesystem::is_regular_file(path, ignored)) return std::nullopt;
     std::ifstream file(path, std::ios::binary);
     const Json root = Json::parse(file, nullptr, false);
     // Compare with the text as written, because writing changes names that are not UTF-8.
@@ -87,9 +85,7 @@ std::optional<StageRates> read_rates(const std::filesystem::path& path, const Ma
             return std::nullopt;
         }
         const auto factor = learnt["factor"].get<double>();
-        if (!std::isfinite(factor) || !(factor > 0)) {
-            return std::nullopt;
-        }
+        if (!std::isfinite(factor) || !(factor > 0)) return std::nullopt;
         rates.kinds[kind] = {factor, learnt["bakes"].get<std::uint32_t>()};
     }
     return rates;

@@ -124,9 +124,7 @@ formats::Status prepare_renderer(const formats::AssetView& view, const PictureLi
     runtime::GlOptions upload;
     if (light.layers.parts) upload.mirrored = &light.layers.parts->mirrored();
     auto renderer = runtime::GlRenderer::create(view, light.sky.environment, upload);
-    if (!renderer) {
-        return renderer.error();
-    }
+    if (!renderer) return renderer.error();
     drawing.renderer.emplace(std::move(*renderer));
     return formats::ok_status();
 }
@@ -183,9 +181,7 @@ void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
 }  // namespace
 
 std::string frame_path(const FrameOptions& options, std::uint32_t frame) {
-    if (options.frames == 1) {
-        return options.output;
-    }
+    if (options.frames == 1) return options.output;
     const std::filesystem::path path(options.output);
     return (path.parent_path() /
             fmt::format("{}-{:04}{}", path.stem().string(), frame + 1, path.extension().string()))

@@ -116,9 +116,7 @@ std::complex<double> index_at(const SubstanceOptions& options, double wavelength
 }
 
 std::vector<double> weights_of(const SubstanceOptions& options, std::size_t wavelengths) {
-    if (options.weights.empty()) {
-        return std::vector<double>(wavelengths, 1.0);
-    }
+    if (options.weights.empty()) return std::vector<double>(wavelengths, 1.0);
     if (options.weights.size() != wavelengths) {
         refuse_usage(
             "--weights",

@@ -60,9 +60,7 @@ std::string nearest_example(const std::string& name) {
 }
 
 int run(const ExampleCommand& options) {
-    if (options.list) {
-        return list_all();
-    }
+    if (options.list) return list_all();
     if (options.name.empty()) {
         refuse_usage("example", "a name is needed", "opaline example --list");
     }

@@ -156,9 +156,7 @@ Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) 
 }
 
 std::string text_of(const Json& json, const char* key) {
-    if (!json.is_object() || !json.contains(key)) {
-        return "unknown";
-    }
+    if (!json.is_object() || !json.contains(key)) return "unknown";
     return printable(json[key].is_string()
                          ? json[key].get<std::string>()
                          : json[key].dump(-1, ' ', true, Json::error_handler_t::replace));
@@ -219,9 +217,7 @@ void print_error(const Json& error) {
 }
 
 void print_provenance(const Json& provenance) {
-    if (!provenance.is_object()) {
-        return;
-    }
+    if (!provenance.is_object()) return;
     fmt::print("generator     {}, {}\n", text_of(provenance, "generator"),
                text_of(provenance, "ray_tracer"));
     if (provenance.contains("scene")) {

@@ -43,9 +43,7 @@ void join(const std::vector<formats::Diagnostic>& more, formats::ImportedScene& 
 
 formats::Status fill_materials(const formats::MediaFile& media, formats::ImportedScene& imported) {
     const auto warnings = formats::apply_media(media, imported.scene);
-    if (!warnings) {
-        return warnings.error();
-    }
+    if (!warnings) return warnings.error();
     join(*warnings, imported);
     return formats::ok_status();
 }
@@ -53,22 +51,16 @@ formats::Status fill_materials(const formats::MediaFile& media, formats::Importe
 formats::Status add_clouds(const formats::MediaFile& media, formats::CloudDetail detail,
                            formats::ImportedScene& imported) {
     const auto warnings = formats::load_clouds(media, imported.scene, detail);
-    if (!warnings) {
-        return warnings.error();
-    }
+    if (!warnings) return warnings.error();
     join(*warnings, imported);
     return formats::ok_status();
 }
 
 formats::Status add_media(const formats::MediaFile& media, double metres_per_unit,
                           formats::CloudDetail detail, formats::ImportedScene& imported) {
-    if (auto status = fill_materials(media, imported); !status) {
-        return status;
-    }
+    if (auto status = fill_materials(media, imported); !status) return status;
     const auto warnings = formats::load_volumes(media, metres_per_unit, imported.scene);
-    if (!warnings) {
-        return warnings.error();
-    }
+    if (!warnings) return warnings.error();
     join(*warnings, imported);
     return add_clouds(media, detail, imported);
 }
@@ -82,9 +74,7 @@ formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& pa
     none.file = path.string();
     auto file =
         media.empty() ? std::move(none) : formats::read_media(media, options.allowed_folders);
-    if (!file) {
-        return std::move(file).error();
-    }
+    if (!file) return std::move(file).error();
     auto imported = formats::import_vdb(path, *file, options.metres_per_unit);
     if (imported) {
         if (auto status = fill_materials(*file, *imported); !status) {
@@ -102,9 +92,7 @@ formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::
                                                          const formats::ImportOptions& options,
                                                          formats::CloudDetail detail) {
     const auto file = formats::read_media(path, options.allowed_folders);
-    if (!file) {
-        return file.error();
-    }
+    if (!file) return file.error();
     if (file->volumes.empty() && file->clouds.empty()) {
         return make_error(ErrorKind::bad_input, path.string(), "", "it has no volumes or clouds",
                           "a media file alone is a scene if it places a volume or a cloud layer");
@@ -123,25 +111,19 @@ formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& p
                                                   const std::filesystem::path& media,
                                                   formats::CloudDetail detail) {
     auto imported = formats::import_gltf(path, options);
-    if (!imported) {
-        return imported;
-    }
+    if (!imported) return imported;
     // The file on the command line comes last and overrides the scene's media.
     if (!imported->media.empty()) {
         const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media",
                                               options.allowed_folders);
-        if (!own) {
-            return own.error();
-        }
+        if (!own) return own.error();
         if (auto status = add_media(*own, options.metres_per_unit, detail, *imported); !status) {
             return std::move(status).error();
         }
     }
     if (!media.empty()) {
         const auto file = formats::read_media(media, options.allowed_folders);
-        if (!file) {
-            return file.error();
-        }
+        if (!file) return file.error();
         if (auto status = add_media(*file, options.metres_per_unit, detail, *imported); !status) {
             return std::move(status).error();
         }
@@ -154,9 +136,7 @@ formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& p
 
 formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, formats::Checks checks) {
     auto file = formats::FileBytes::open(path);
-    if (!file) {
-        return std::move(file).error();
-    }
+    if (!file) return std::move(file).error();
     auto loaded = formats::read_opal(file->bytes(), path.string(), checks);
     if (!loaded && is_scene_ending(ending_of(path))) {
         const std::string name = path.filename().string();
@@ -164,9 +144,7 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
             ErrorKind::bad_input, path.string(), "", "is a scene, not an .opal file",
             "bake it first: opaline bake " + name + " -o " + path.stem().string() + ".opal");
     }
-    if (!loaded) {
-        return std::move(loaded).error();
-    }
+    if (!loaded) return std::move(loaded).error();
     return OpenedAsset{std::move(*file), std::move(*loaded)};
 }
 
@@ -187,9 +165,7 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
     auto imported = ending == ".vdb"    ? open_vdb(path, options, media, detail)
                     : ending == ".json" ? open_media_scene(path, options, detail)
                                         : open_gltf(path, options, media, detail);
-    if (!imported) {
-        return imported;
-    }
+    if (!imported) return imported;
     const auto flattened = bake::flatten_slabs(imported->scene, {});
     imported->warnings.insert(imported->warnings.end(), flattened.begin(), flattened.end());
     if (auto status = report_warnings(imported->warnings); !status) {
@@ -218,16 +194,10 @@ formats::Status check_light(const std::string& spec) {
 }
 
 formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees) {
-    if (auto status = check_light(spec); !status) {
-        return status.error();
-    }
+    if (auto status = check_light(spec); !status) return status.error();
     auto opened = bake::open_environment(spec);
-    if (!opened) {
-        return std::move(opened).error();
-    }
-    if (auto status = report_warnings(opened->warnings); !status) {
-        return std::move(status).error();
-    }
+    if (!opened) return std::move(opened).error();
+    if (auto status = report_warnings(opened->warnings); !status) return std::move(status).error();
     return OpenedLight{
         std::move(opened->environment),
         runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};

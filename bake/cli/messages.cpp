@@ -180,9 +180,7 @@ std::string printable(std::string_view text) {
 
 std::string shorten(std::string_view text) {
     constexpr std::size_t kMost = 40;
-    if (text.size() <= kMost) {
-        return printable(text);
-    }
+    if (text.size() <= kMost) return printable(text);
     std::size_t end = kMost;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) {
         --end;  // not within a character

@@ -54,9 +54,7 @@ void check_options(const MieCommand& options) {
     if (by_radius && droplets.substance.wavelengths.size() > 1) {
         refuse_usage("--wavelength", "one sphere takes one", "give --effective-radius");
     }
-    if (by_droplets) {
-        return;
-    }
+    if (by_droplets) return;
     for (const CLI::Option* option :
          {droplets.gamma_option, droplets.size_step_option, droplets.threads_option,
           options.density_option, options.forward_angle_option}) {

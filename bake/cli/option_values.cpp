@@ -74,9 +74,7 @@ std::uint64_t read_number(const char* path) {
 std::uint64_t address_space_left(unsigned threads) {
     constexpr std::uint64_t kHeaps = 64u << 20, kStack = 16u << 20;
     rlimit limit{};
-    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) {
-        return kUnlimited;
-    }
+    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
     const std::uint64_t pages = read_number("/proc/self/statm");  // its first number: all of them
     const std::uint64_t used =
         (pages == kUnlimited ? 0 : pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) +
@@ -214,9 +212,7 @@ std::uint64_t available_memory(unsigned threads) {
 formats::Status check_memory(const std::string& file, const bake::MemoryPrediction& prediction,
                              std::uint64_t limit) {
     const auto most = static_cast<double>(limit);
-    if (prediction.bytes() <= most) {
-        return formats::ok_status();
-    }
+    if (prediction.bytes() <= most) return formats::ok_status();
     const auto& largest = prediction.largest();
     return make_error(
         ErrorKind::resource, file, "",
@@ -252,9 +248,7 @@ formats::Status check_threads(unsigned threads) {
     for (std::thread& thread : started) {
         thread.join();
     }
-    if (fault.empty()) {
-        return formats::ok_status();
-    }
+    if (fault.empty()) return formats::ok_status();
     return make_error(ErrorKind::resource, "", "--threads",
                       fmt::format("{} threads cannot be started: {}", count, fault),
                       "lower --threads, or raise the limits of memory and of processes");

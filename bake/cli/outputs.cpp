@@ -40,9 +40,7 @@ class Taken {
     /// The use of the file, if it has one.
     const std::string* find(const Identity& identity) const {
         const auto path = by_path_.find(identity.path);
-        if (path != by_path_.end()) {
-            return &path->second;
-        }
+        if (path != by_path_.end()) return &path->second;
         const auto inode = by_inode_.find(identity.inode);
         return inode == by_inode_.end() ? nullptr : &inode->second;
     }
@@ -86,9 +84,7 @@ Status check_outputs(std::span<const OutputFile> outputs,
         }
     }
     for (const OutputFile& output : outputs) {
-        if (auto status = check_ending(output); !status) {
-            return status;
-        }
+        if (auto status = check_ending(output); !status) return status;
         const Identity identity = identify(output.path);
         if (const std::string* use = taken.find(identity); use != nullptr && use->empty()) {
             return make_error(ErrorKind::usage, output.path.string(), "",

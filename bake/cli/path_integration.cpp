@@ -62,9 +62,7 @@ namespace {
 
 // Fidelity "paper" of a scene's volumes: what it contradicts, and a warning.
 void check_paper(const PathIntegrationOptions& options, const formats::Scene& scene) {
-    if (!bake::has_paper_fidelity(scene)) {
-        return;
-    }
+    if (!bake::has_paper_fidelity(scene)) return;
     if (options.renormalise && options.renormalise_option->count() > 0) {
         refuse(make_error(ErrorKind::usage, scene.volumes.front().name, "--renormalise",
                           "the paper's formulas have no renormalisation, and fidelity is 'paper'",

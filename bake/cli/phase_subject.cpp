@@ -88,9 +88,7 @@ std::vector<double> choose_cosines(const std::function<double(double)>& p) {
 
 PhaseSubject make_phase_subject(const PhaseChoice& choice) {
     using Type = PhaseType;
-    if (choice.type == PhaseType::mie) {
-        return make_droplet_subject(choice.droplets);
-    }
+    if (choice.type == PhaseType::mie) return make_droplet_subject(choice.droplets);
     if (choice.type == Type::henyey_greenstein) {
         const double g = choice.g;  // not rounded to the single precision of PhaseFunction
         return PhaseSubject{[g](double cosine) { return bake::henyey_greenstein(cosine, g); },

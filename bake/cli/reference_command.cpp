@@ -67,13 +67,9 @@ formats::Asset make_stand_in(const formats::Scene& scene) {
 std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceOptions& options,
                                                        const bake::HitScene& surfaces,
                                                        std::uint32_t samples) {
-    if (options.texture_filter == "none") {
-        return nullptr;
-    }
+    if (options.texture_filter == "none") return nullptr;
     bake::TextureFiltering filtering{bake::make_scene_pyramids(surfaces.scene())};
-    if (!filtering.pyramids.any()) {
-        return nullptr;
-    }
+    if (!filtering.pyramids.any()) return nullptr;
     filtering.step = 1 / std::sqrt(static_cast<float>(samples));
     filtering.gradient_limit =
         options.texture_filter == "limited" ? 0.7f : std::numeric_limits<float>::infinity();
@@ -110,9 +106,7 @@ void report_lost_paths(const ReferenceOptions& options, const bake::Estimate& es
     const double paths =
         static_cast<double>(estimate.pixel.size()) * static_cast<double>(estimate.samples);
     const double lost = static_cast<double>(estimate.lost) / std::max(paths, 1.0);
-    if (lost <= kNoticed) {
-        return;
-    }
+    if (lost <= kNoticed) return;
     require(report_warnings({formats::make_warning(
         options.scene, "",
         fmt::format("{:.2g} % of the paths left a body that is not closed: what leaves through its "

@@ -65,9 +65,7 @@ void add_estimate_options(CLI::App& command, ReferenceOptions& options) {
 
 // Paths do not know cloud layers.
 void check_layers(const formats::Scene& scene) {
-    if (scene.layers.empty()) {
-        return;
-    }
+    if (scene.layers.empty()) return;
     if (scene.primitives.empty() && scene.volumes.empty()) {
         refuse(make_error(ErrorKind::bad_input, scene.source, "clouds",
                           "the scene is a cloud layer alone, which no paths are traced through",

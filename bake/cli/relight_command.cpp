@@ -102,9 +102,7 @@ std::vector<bake::VolumeRow> make_volume_rows(const formats::VolumesView& volume
 
 void write_volumes(const RelightCommand& options, const formats::VolumesView& volumes,
                    const runtime::LightVector& light, const runtime::ShadeOptions& shading) {
-    if (volumes.empty()) {
-        return;
-    }
+    if (volumes.empty()) return;
     if (ending_of(options.output) != ".csv") {
         print_note("opaline: the file has volumes, which only .csv outputs show");
         return;

@@ -58,9 +58,7 @@ std::string coefficients_text(const bake::Knobs& knobs) {
 double take_predicted(std::vector<bake::StageCost>& costs, const std::string& name) {
     const auto found = std::find_if(costs.begin(), costs.end(),
                                     [&](const bake::StageCost& cost) { return cost.name == name; });
-    if (found == costs.end()) {
-        return 0;
-    }
+    if (found == costs.end()) return 0;
     const double seconds = found->seconds;
     costs.erase(found);
     return seconds;

@@ -213,9 +213,7 @@ bake::BakeOptions parse_effects(const SceneOptions& options) {
     // Of later versions; whoever names one should not take it for a slip of the pen.
     constexpr std::array<std::string_view, 1> kLater{"filtering"};
     bake::BakeOptions wanted = options.bake;
-    if (options.effects == "auto") {
-        return wanted;
-    }
+    if (options.effects == "auto") return wanted;
     if (options.effects == "all") {
         wanted.simulate_all = true;
         return wanted;

@@ -60,9 +60,7 @@ void check_slab_options(const SlabCommand& options) {
     if (options.views > 0 && options.eta != 1) {
         refuse_usage("--eta", "radiance has no boundaries", "leave out --views");
     }
-    if (options.method != SlabMethod::model && options.method != SlabMethod::table) {
-        return;
-    }
+    if (options.method != SlabMethod::model && options.method != SlabMethod::table) return;
     if (options.method == SlabMethod::table && options.streams_option->count() > 0) {
         refuse_usage("--streams", "tables have their own number of streams",
                      "leave it out, or give another --method");

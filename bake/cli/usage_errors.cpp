@@ -62,9 +62,7 @@ std::string describe_unexpected(const CLI::App& command, const std::string& argu
         return fmt::format("there is no option '{}'{}", shorten(name),
                            suggest(name, option_names(command)));
     }
-    if (command.get_parent() == nullptr) {
-        return describe_unknown_command(command, argument);
-    }
+    if (command.get_parent() == nullptr) return describe_unknown_command(command, argument);
     return fmt::format("'{}' is one argument too many", shorten(argument));
 }
 
@@ -75,9 +73,7 @@ std::string display_name(const CLI::Option& option) {
 }
 
 std::string describe_missing(const CLI::App& command) {
-    if (command.get_parent() == nullptr) {
-        return "a command is missing";
-    }
+    if (command.get_parent() == nullptr) return "a command is missing";
     std::string list;
     for (const CLI::Option* option : command.get_options()) {
         if (option->get_required() && option->count() == 0) {

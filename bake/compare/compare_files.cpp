@@ -101,9 +101,7 @@ Result<std::vector<RelightRow>> sorted_rows(const FileBytes& file,
                          std::to_string(twin->vertex),
                      "has more than one row", "keep one row per receiver");
     }
-    if (rows->empty()) {
-        return fault(path, "", "has no rows", "write the table again with relight");
-    }
+    if (rows->empty()) return fault(path, "", "has no rows", "write the table again with relight");
     return rows;
 }
 

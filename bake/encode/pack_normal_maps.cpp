@@ -28,9 +28,7 @@ formats::NormalMaps pack_normal_maps(const formats::Scene& scene) {
         }
         maps.record.push_back(map);
     }
-    if (maps.record.empty()) {
-        return maps;
-    }
+    if (maps.record.empty()) return maps;
     for (const formats::Primitive& p : scene.primitives) {
         for (std::size_t v = 0; v < p.position.size(); ++v) {
             const glm::vec4 t = p.tangent.empty() ? glm::vec4(0.0f) : p.tangent[v];

@@ -79,9 +79,7 @@ void snap(const ScalarField& solid, double gap, std::vector<double>& value, Tria
     for (const auto& triangle : floor.triangles) {
         for (std::size_t k = 0; k < 3; ++k) {
             const std::uint32_t a = triangle[k], b = triangle[(k + 1) % 3];
-            if (!crosses(value[a], value[b])) {
-                continue;
-            }
+            if (!crosses(value[a], value[b])) continue;
             const glm::dvec3 crossing = find_crossing(solid, gap, floor, value, a, b);
             const double reach = kReach * glm::distance(floor.position[a], floor.position[b]);
             for (const std::uint32_t end : {a, b}) {
@@ -115,9 +113,7 @@ void split(const ScalarField& solid, double gap, std::vector<double>& value, Tri
         auto [a, b, c] = whole;
         for (int turn = 0; turn < 2; ++turn) {
             const bool crosses_ab = crosses(value[a], value[b]);
-            if (crosses_ab && !crosses(value[b], value[c])) {
-                break;
-            }
+            if (crosses_ab && !crosses(value[b], value[c])) break;
             std::tie(a, b, c) = std::make_tuple(b, c, a);
         }
         if (!crosses(value[a], value[b])) {

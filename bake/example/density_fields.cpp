@@ -90,9 +90,7 @@ formats::SparseGrid<float> make_smoke_density(double base) {
     const auto density = [base](glm::ivec3 voxel) {
         glm::dvec3 p = kVoxel * glm::dvec3(voxel) - glm::dvec3(0, base, 0);
         const double h = p.y / kHeight;
-        if (h < 0 || h > 1) {
-            return 0.0;
-        }
+        if (h < 0 || h > 1) return 0.0;
         // The column sways, and eddies pull it apart the more the higher it has come.
         p.x -= 0.05 * h * std::sin(2.2 * kPi * h + 0.4);
         p.z -= 0.04 * h * std::sin(1.7 * kPi * h + 1.9);
@@ -121,9 +119,7 @@ constexpr double kFireVoxel = 0.006, kFireHeight = 0.6;
 // How far inside of the flames a point is: 1 at their heart, 0 where they end.
 double flame_at(glm::dvec3 p) {
     const double h = p.y / 0.36;
-    if (h < 0 || h > 1) {
-        return 0;
-    }
+    if (h < 0 || h > 1) return 0;
     // Tongues lick: noise that is stretched upward pulls apart what would be a cone.
     const glm::dvec3 q(p.x / 0.045, p.y / 0.12, p.z / 0.045);
     const double strength = 0.06 * smooth_step(0, 0.6, h);
@@ -139,9 +135,7 @@ double flame_at(glm::dvec3 p) {
 // Smoke that rises from them.
 double fire_smoke_at(glm::dvec3 p) {
     const double h = p.y / kFireHeight;
-    if (h < 0.1 || h > 1) {
-        return 0;
-    }
+    if (h < 0.1 || h > 1) return 0;
     p.x -= 0.1 * h * h;
     const glm::dvec3 q = p / 0.07;
     p.x += 0.1 * h * fractal_noise(q, 4);
@@ -178,9 +172,7 @@ formats::SparseGrid<float> make_cumulus_density(double voxel) {
     const auto density = [&](glm::ivec3 index) {
         const glm::dvec3 p = voxel * glm::dvec3(index);
         const double plain = distance_to(puffs, p);
-        if (plain > 0.4 * kBulge) {
-            return 0.0;
-        }
+        if (plain > 0.4 * kBulge) return 0.0;
         const double d =
             plain + kBulge * (0.5 - 1.4 * billows(p / 110.0, 4)) + 10 * fractal_noise(p / 25.0, 2);
         const double base = smooth_step(-4, 14, p.y - 8 * fractal_noise(p / 90.0, 2));
@@ -202,9 +194,7 @@ formats::SparseGrid<float> make_noise_density() {
     const auto density = [half](glm::ivec3 voxel) {
         const glm::dvec3 p = kVoxel * glm::dvec3(voxel) - glm::dvec3(0, half.y, 0);
         const double r = glm::length(p / half);
-        if (r >= 1) {
-            return 0.0;
-        }
+        if (r >= 1) return 0.0;
         const double noise = fractal_noise(p / 0.28, 5);
         return smooth_step(-0.12, 0.35, noise + 0.45 * (0.55 - r)) * (1 - smooth_step(0.8, 1, r));
     };

@@ -137,9 +137,7 @@ formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& con
             run_stage(log, "droplets of clouds", std::string(kCloud), [&](std::uint64_t&) {
                 return scatter_bands(layer, radius_sampling(job.knobs), context);
             });
-        if (!droplets) {
-            return std::move(droplets).error();
-        }
+        if (!droplets) return std::move(droplets).error();
         formats::LayerRecord record = make_record(layer, layout, *droplets, sizes);
         append_thickness(layer, record, baked.clouds);
         append_ground(layer, record, baked.clouds);

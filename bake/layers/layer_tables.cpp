@@ -66,9 +66,7 @@ double glow_events(unsigned row, unsigned events) {
 
 std::vector<float> tabulate_glow(const PeakSplit& split, unsigned angles, unsigned events) {
     std::vector<float> glow;
-    if (!(split.angle > 0)) {
-        return glow;
-    }
+    if (!(split.angle > 0)) return glow;
     const std::vector<double> moments = table_moments(split.peak, kGlowMoments);
     const std::vector<double> angle = glow_angles(split, angles);
     for (unsigned j = 0; j < events; ++j) {

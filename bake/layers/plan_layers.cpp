@@ -88,9 +88,7 @@ LayerBounds bound_layer(const formats::CloudLayer& layer) {
     LayerBounds bounds;
     const double thickness =
         static_cast<double>(*std::ranges::max_element(layer.thickness, std::less<>{}));
-    if (!(thickness > 0) || !(layer.droplets > 0)) {
-        return bounds;
-    }
+    if (!(thickness > 0) || !(layer.droplets > 0)) return bounds;
     const auto bands = scatter_bands(layer, {1, kPlanRadii, kPlanRadii}, {});
     if (!bands) {
         constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();

@@ -49,9 +49,7 @@ bool is_between(const AngularTable& table, std::size_t i, std::size_t j, double 
     for (std::size_t k = i + 1; k < j; ++k) {
         const double t = cosine_difference(table.angle[i], table.angle[k]) / width;
         const double line = std::lerp(table.value[i], table.value[j], t);
-        if (!(std::abs(line - table.value[k]) <= tolerance * table.value[k])) {
-            return false;
-        }
+        if (!(std::abs(line - table.value[k]) <= tolerance * table.value[k])) return false;
     }
     return true;
 }
@@ -88,9 +86,7 @@ double integrate_cosine(const AngularTable& table) {
 }
 
 double eval_table(const AngularTable& table, double angle) {
-    if (!(angle >= table.angle.front() && angle <= table.angle.back())) {
-        return 0;
-    }
+    if (!(angle >= table.angle.front() && angle <= table.angle.back())) return 0;
     return interpolate_rows(table, interval_of(table, angle), angle);
 }
 

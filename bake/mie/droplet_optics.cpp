@@ -72,9 +72,7 @@ struct Sphere {
 void add_directions(const RadiusNode& node, const Sphere& sphere, const AngleGrid& grid,
                     MieSeries& series, HalfSums& sums) {
     const double x = sphere.wave_number * node.radius;
-    if (x < kMinSizeParameter || !(node.share > 0)) {
-        return;
-    }
+    if (x < kMinSizeParameter || !(node.share > 0)) return;
     expand_sphere(x, sphere.index, series);
     add_intensities(series, grid, node.share, sums.intensity);
     sums.scattering_of_directions +=
@@ -84,9 +82,7 @@ void add_directions(const RadiusNode& node, const Sphere& sphere, const AngleGri
 /// Adds the cross-sections of one droplet.
 void add_sections(const RadiusNode& node, const Sphere& sphere, MieSeries& series, HalfSums& sums) {
     const double x = sphere.wave_number * node.radius;
-    if (x < kMinSizeParameter || !(node.share > 0)) {
-        return;
-    }
+    if (x < kMinSizeParameter || !(node.share > 0)) return;
     const MieEfficiencies q = sphere_efficiencies(x, sphere.index, series);
     const double section = node.share * pi * node.radius * node.radius;
     sums.extinction += section * q.q_ext;
@@ -135,16 +131,12 @@ AngularTable halve_difference(const BothSums& sums, const AngleGrid& grid) {
 
 formats::Status check_inputs(const DropletDistribution& droplets, double wavelength,
                              std::complex<double> index) {
-    if (auto status = check_droplets(droplets); !status) {
-        return status;
-    }
+    if (auto status = check_droplets(droplets); !status) return status;
     if (!(wavelength > 0 && std::isfinite(wavelength))) {
         return formats::make_error(formats::ErrorKind::usage, "", "wavelength",
                                    number_text(wavelength) + " m is not a length above 0");
     }
-    if (auto status = check_sphere(1, index); !status) {
-        return status;
-    }
+    if (auto status = check_sphere(1, index); !status) return status;
     if (index == 1.0) {
         return formats::make_error(formats::ErrorKind::usage, "", "index of refraction",
                                    "droplets of index 1 scatter nothing",

@@ -63,9 +63,7 @@ double rest_extinction(const PeakSplit& split, double kappa) {
 std::vector<double> forward_glow(const PeakSplit& split, std::span<const double> moments,
                                  double events, std::span<const double> angles) {
     std::vector<double> glow(angles.size(), 0.0);
-    if (split.weight <= 0 || !(events > 0)) {
-        return glow;
-    }
+    if (split.weight <= 0 || !(events > 0)) return glow;
     const double once = events * std::exp(-events), share = scattered_share(0, events);
     std::vector<double> rest;
     rest.reserve(moments.size());

@@ -45,9 +45,7 @@ constexpr IndexRow kIce[] = {
 };
 
 std::span<const IndexRow> rows_of(Substance substance) {
-    if (substance == Substance::ice) {
-        return kIce;
-    }
+    if (substance == Substance::ice) return kIce;
     return kWater;
 }
 

@@ -26,9 +26,7 @@ glm::dvec3 bounded_transfer(const glm::dvec3& D, const glm::dvec3& N_g, double t
 
 double sqrt_secant(double z, double d) {
     const double half = std::abs(d) / 2, upper = std::sqrt(z + half);
-    if (half > z) {
-        return std::copysign(upper, d);
-    }
+    if (half > z) return std::copysign(upper, d);
     const double sum = upper + std::sqrt(z - half);
     return sum > 0 ? d / sum : 0;
 }

@@ -56,9 +56,7 @@ std::size_t merge_columns(std::span<DifferentialColumn> columns, std::span<const
     std::size_t count = 0;
     for (int k = kCoordinates - 1; k >= 0 && count < columns.size(); --k) {
         const double eigenvalue = solver.eigenvalues()[k];
-        if (!(eigenvalue > least)) {
-            break;
-        }
+        if (!(eigenvalue > least)) break;
         const Coordinates x =
             std::sqrt(eigenvalue) * solver.eigenvectors().col(k).cwiseProduct(size);
         columns[count++] = from_coordinates(x, axes);

@@ -38,9 +38,7 @@ double tangent_area(const PathDifferential& path, const DifferentialRules& rules
 }
 
 void merge_above(PathDifferential& path, const DifferentialRules& rules, const MergeSpace& space) {
-    if (path.count <= kMergeAbove) {
-        return;
-    }
+    if (path.count <= kMergeAbove) return;
     const glm::dmat3 frame = frame_around(space.N_g.value_or(space.D));
     const double before = tangent_area(path, rules, frame);
     const double step = path_step(path, rules);
@@ -138,13 +136,9 @@ std::optional<glm::dvec3> scatter_on_facets(PathDifferential& path, const Differ
     const Mirror mirror = make_mirror(-w_i, facet.m);
     const bool refracts = event.eta > 0;
     const auto refraction = refracts ? make_refraction(-w_i, facet.m, event.eta) : std::nullopt;
-    if (refracts && !refraction) {
-        return std::nullopt;
-    }
+    if (refracts && !refraction) return std::nullopt;
     const glm::dvec3 w_o = refracts ? refraction->refracted : mirror.reflected;
-    if (refracts ? !(w_o.z < 0) : !(w_o.z > 0)) {
-        return std::nullopt;
-    }
+    if (refracts ? !(w_o.z < 0) : !(w_o.z > 0)) return std::nullopt;
     const auto change = [&](const glm::dvec3& dw_i, const glm::dvec3& dm, double step) {
         return refracts ? bounded_refraction(*refraction, -dw_i, dm, step)
                         : mirror.change(-dw_i, dm);

@@ -33,9 +33,7 @@ double depth_between_nodes(const ColumnField& field, const MediumBand& band, glm
     const DepthNodes around = depth_nodes_around(field.lattice, x);
     double sum = 0, weights = 0;
     for (std::size_t c = 0; c < around.slot.size(); ++c) {
-        if (!(around.weight[c] > 0)) {
-            continue;
-        }
+        if (!(around.weight[c] > 0)) continue;
         weights += around.weight[c];
         const float* const value = values_of(field, around.slot[c], direction);
         for (std::size_t v = 0; v < field.volumes; ++v) {
@@ -113,9 +111,7 @@ Columns columns_along(const VolumeSpace& space, glm::vec3 from, glm::vec3 direct
     VolumeMarch march(space, from, direction, reach);
     while (const auto segment = march.next()) {
         for (std::size_t v = 0; v < space.volumes.size(); ++v) {
-            if (!(segment->bound[v] > 0)) {
-                continue;
-            }
+            if (!(segment->bound[v] > 0)) continue;
             const TrackedVolume& volume = space.volumes[v];
             const float length = segment->end - segment->begin;
             const float voxels = length * glm::length(volume.to_index * direction);
@@ -181,9 +177,7 @@ FieldDepth depth_toward(const ColumnField& field, const BandMedium& medium, glm:
     FieldDepth depth;
     if (shadows == Shadows::of_everything) {
         depth.open = open_share(field, x, direction);
-        if (!(depth.open > 0)) {
-            return depth;
-        }
+        if (!(depth.open > 0)) return depth;
     }
     const double reach = field.lattice.spacing;
     const glm::dvec3 d = reach * field.toward[direction];

@@ -139,9 +139,7 @@ ImageLights make_image_lights(const formats::Environment& environment,
             {glm::normalize(rotation * to_dvec3(disc.direction)),
              formats::disc_solid_angle(disc.angular_radius) * to_dvec3(disc.radiance)});
     }
-    if (!has_sky) {
-        return lights;
-    }
+    if (!has_sky) return lights;
     lights.sky = make_dark_sky();
     constexpr std::uint32_t kOfFace = ImageSky::kTexels * ImageSky::kTexels;
     std::vector<TexelFlux> flux;
@@ -200,9 +198,7 @@ SkyView view_sky(const ImageSky& sky, const PhaseDensity& phase, const ZonalTabl
         const double p = eval_phase(phase, cosine);
         total += p * texel.solid_angle;
         const double brightness = texel.brightness();
-        if (!(brightness > 0)) {
-            continue;
-        }
+        if (!(brightness > 0)) continue;
         const std::size_t number = cosine > ahead ? SkyView::kAhead : std::size_t{texel.cell};
         SkyPart& part = view.part[number];
         part.is_dark = false;

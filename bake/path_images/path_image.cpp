@@ -224,9 +224,7 @@ formats::Result<PathImage> make_path_image(const ReferenceScene& scene, const Li
     const ScatteringSpace space = prepare(scene, light, options, context);
     const glm::vec3 eye(glm::dvec3(camera.eye.x, camera.eye.y, camera.eye.z) -
                         scene.surfaces.scene().origin);
-    if (context.cancelled()) {
-        return interrupted();
-    }
+    if (context.cancelled()) return interrupted();
     FurnaceGrid furnace;
     const bool renormalises = needs_furnace(options, scene.volumes);
     if (renormalises) {
@@ -262,9 +260,7 @@ formats::Result<PathImage> make_path_image(const ReferenceScene& scene, const Li
                 context.on_progress({"path integration", range.end, pixels});
             }
         });
-    if (context.cancelled()) {
-        return interrupted();
-    }
+    if (context.cancelled()) return interrupted();
     image.seconds = seconds_since(start);
     return image;
 }

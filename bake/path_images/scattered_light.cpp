@@ -33,9 +33,7 @@ glm::dvec3 gather_once(const ScatteringSpace& space, const ViewRay& ray, const S
                 step.scattered *
                 depth_toward(space.sun_field, medium, x, s, options.shadows).visibility();
         }
-        if (!has_cells) {
-            continue;
-        }
+        if (!has_cells) continue;
         for (std::size_t c = 0; c < ImageSky::kCellCount; ++c) {
             if (!sky.part[c].is_dark) {
                 from_part[c] +=
@@ -122,9 +120,7 @@ class PathGatherer {
                  const ZonalRow& kernel) const {
         double sum = 0;
         march_quasi_path(path, medium_, space_.limits, [&](const PathStep& step) {
-            if (!(step.depth > 0)) {
-                return true;
-            }
+            if (!(step.depth > 0)) return true;
             const double survival = std::exp(-step.absorption);
             const FieldDepth toward =
                 depth_toward(field, medium_, step.position, number, options_.shadows);
@@ -224,9 +220,7 @@ glm::dvec3 gather_along_ray(const ScatteringSpace& space, const ViewRay& ray, co
 RayLight gather_scattered(const ScatteringSpace& space, const ViewRay& ray, const SkyView& sky,
                           const ScatterOptions& options) {
     RayLight light;
-    if (ray.is_empty()) {
-        return light;
-    }
+    if (ray.is_empty()) return light;
     light.once = gather_once(space, ray, sky, options);
     if (options.often) {
         light.often = options.form == PathForm::ray ? gather_from_entry(space, ray, sky, options)
@@ -289,9 +283,7 @@ FurnaceGrid make_furnace_grid(const ScatteringSpace& space, const runtime::Camer
                                                  static_cast<double>(row * FurnaceGrid::kPixels));
                 const ViewRay ray = march_view_ray(space.volumes, bands, eye, {d.x, d.y, d.z},
                                                    std::numeric_limits<float>::infinity());
-                if (ray.is_empty()) {
-                    continue;
-                }
+                if (ray.is_empty()) continue;
                 const SkyView sky =
                     view_sky(even, space.phase.density, space.phase.ray, glm::dvec3(ray.direction));
                 for (std::size_t k = 0; k < bands.size(); ++k) {

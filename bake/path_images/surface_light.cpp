@@ -36,9 +36,7 @@ glm::dvec3 passing(const ScatteringSpace& space, const HitScene& surfaces, const
                    glm::vec3 toward) {
     const RayOrigin& from = glm::dot(toward, point.flat) > 0 ? point.front : point.back;
     glm::dvec3 share(0);
-    if (surfaces.is_blocked(from, toward)) {
-        return share;
-    }
+    if (surfaces.is_blocked(from, toward)) return share;
     const Columns columns = columns_along(space.volumes, from.position, toward, kForever);
     for (const MediumBand& band : space.bands) {
         double depth = 0;
@@ -58,9 +56,7 @@ glm::dvec3 passing(const ScatteringSpace& space, const HitScene& surfaces, const
 glm::dvec3 response(const LitPoint& point, glm::dvec3 toward) {
     const double cosine = glm::dot(glm::dvec3(point.normal), toward);
     const double flat = glm::dot(glm::dvec3(point.flat), toward);
-    if (!(cosine * flat > 0)) {
-        return glm::dvec3(0);
-    }
+    if (!(cosine * flat > 0)) return glm::dvec3(0);
     return std::abs(cosine) / std::numbers::pi * (cosine > 0 ? point.reflect : point.transmit);
 }
 
@@ -72,9 +68,7 @@ std::optional<SurfaceHit> first_visible_hit(const HitScene& surfaces, glm::vec3 
     RayOrigin from{origin};
     for (std::uint32_t step = 0; step < kMostSteps; ++step) {
         auto hit = surfaces.closest_hit(from, direction, kForever);
-        if (!hit) {
-            break;
-        }
+        if (!hit) break;
         const formats::Material& material =
             scene.materials[scene.primitives[hit->primitive].material];
         if (!(glm::dot(direction, hit->flat) > 0) || material.double_sided) {

@@ -60,9 +60,7 @@ ViewRay march_view_ray(const VolumeSpace& space, std::span<const MediumBand> ban
                     segment->bound[v] > 0 ? static_cast<double>(space.volumes[v].density(x)) : 0.0;
                 most = std::max(most, density[v]);
             }
-            if (!(most > 0)) {
-                continue;
-            }
+            if (!(most > 0)) continue;
             if (ray.is_empty()) {
                 ray.entry = segment->begin + i * ds;
             }

@@ -18,9 +18,7 @@ double probe_depth(const Coefficient& coefficient, const VolumeBox& box, glm::dv
                    glm::dvec3 direction, double step) {
     const double length = exit_distance(box, x, direction);
     const double count = std::ceil(length / step);
-    if (!(count > 0)) {
-        return 0;
-    }
+    if (!(count > 0)) return 0;
     const double ds = length / count;
     double sum = 0;
     for (double i = 0; i < count; ++i) {

@@ -126,9 +126,7 @@ PathEnd march_quasi_path(const QuasiPath& path, const Medium& medium, const Marc
         const glm::dvec3 direction = heading.direction();
         if (!limits.box.contains(at.position + ds * direction)) {
             ds = std::min(ds, exit_distance(limits.box, at.position, direction));
-            if (ds <= 1e-12 * limits.step) {
-                break;
-            }
+            if (ds <= 1e-12 * limits.step) break;
         }
         glm::dvec3 middle = at.position + 0.5 * ds * direction;
         Coefficients here = medium(middle);

@@ -102,9 +102,7 @@ Knobs choose_knobs(const BakeInputs& bake, const Knobs& wanted, const Context& c
         }
         next = best.choice.met ? std::nullopt : next_knobs(bake.effects, whole);
     }
-    if (context.cancelled()) {
-        return wanted;
-    }
+    if (context.cancelled()) return wanted;
     auto samples = best.samples.begin();
     for_each_samples(state.subjects, [&](PreparedPtr& own) { own = std::move(*samples++); });
     project_test_lights(state.lights, best.choice.knobs.cubemap_size);

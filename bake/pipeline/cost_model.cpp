@@ -37,9 +37,7 @@ void bill_layers(const CostRequest& request, std::span<PlanEntry> plan, Bill& bi
     for (std::uint32_t i = 0; i < request.scene.layers.size(); ++i) {
         PlanEntry* const cloud = find_layer_entry(plan, i, kCloud);
         PlanEntry* const often = find_layer_entry(plan, i, kCloudOften);
-        if (cloud != nullptr && !cloud->on) {
-            continue;
-        }
+        if (cloud != nullptr && !cloud->on) continue;
         const formats::CloudLayer& layer = request.scene.layers[i];
         const LayerWork once = count_layer_work(layer, {i, true, false, false}, request.knobs);
         const bool has_often = often == nullptr || often->on;
@@ -141,9 +139,7 @@ void bill_shared_light(const CostedBake& bake, Bill& bill) {
     for (std::size_t e = 0; e < effects.size(); ++e) {
         const auto concerned = std::ranges::find_if(
             bake.subjects, [&](const CostedSubject& subject) { return subject.acts[e]; });
-        if (effects[e].light_work == nullptr || concerned == bake.subjects.end()) {
-            continue;
-        }
+        if (effects[e].light_work == nullptr || concerned == bake.subjects.end()) continue;
         PlanEntry* const payer = bake.payer(*concerned, e);
         const LightWork light = effects[e].light_work(bake.input);
         const std::string name(effects[e].name);
@@ -201,9 +197,7 @@ void bill_openness(const CostedBake& bake, Bill& bill) {
     const auto& effects = bake.request.effects.effects;
     bool is_open = false;
     for (const CostedSubject& subject : bake.subjects) {
-        if (!subject.layout.mirrors) {
-            continue;
-        }
+        if (!subject.layout.mirrors) continue;
         if (!is_open) {
             bill.open("openness");
             is_open = true;

@@ -52,9 +52,7 @@ PlanEntry* CostedBake::payer(const CostedSubject& subject, std::size_t effect) c
     const Effect id = request.effects.effects[effect].id;
     PlanEntry* first = nullptr;
     for (PlanEntry& entry : subject.decisions) {
-        if (entry.on && entry.rule == 0 && entry.effect == id) {
-            return &entry;
-        }
+        if (entry.on && entry.rule == 0 && entry.effect == id) return &entry;
         const bool fills =
             entry.on && entry.rule == 0 && request.effects[entry.effect].gather.work != nullptr;
         first = first == nullptr && fills ? &entry : first;
@@ -138,9 +136,7 @@ void bill_rows(const CostedBake& bake, const CostedSubject& subject, double rece
     const EffectTable& effects = bake.request.effects;
     for (std::size_t e = 0; e < effects.effects.size(); ++e) {
         const EffectDescriptor& effect = effects.effects[e];
-        if (!subject.acts[e] || !gathers(effect, subject.layout)) {
-            continue;
-        }
+        if (!subject.acts[e] || !gathers(effect, subject.layout)) continue;
         SubjectCost cost = bake.cost_of(subject, receivers);
         const Work all = effect.gather.work(cost);
         Work of_parts;

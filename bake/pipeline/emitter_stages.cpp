@@ -151,9 +151,7 @@ formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
             return check_lit_media(bake.scene, result.asset.view(), lamps, result.knobs.seed,
                                    context);
         });
-    if (!checked) {
-        return std::move(checked).error();
-    }
+    if (!checked) return std::move(checked).error();
     if (checked->receivers_checked > 0) {
         result.error.by_effect.push_back({"emitters in media", checked->rms_relative});
     } else {
@@ -200,9 +198,7 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
         bake_emitters({bake.scene, bake.rays, bake.receivers, result.asset.primitives, lamps,
                        result.knobs, media, bake.textures, result.asset.volumes.view()},
                       context, result.stages);
-    if (!baked) {
-        return std::move(baked).error();
-    }
+    if (!baked) return std::move(baked).error();
     result.asset.emitters = std::move(baked->emitters);
     if (baked->error.receivers_checked > 0) {
         result.error.by_effect.push_back({std::string(kEmitters), baked->error.rms_relative});

@@ -12,9 +12,7 @@ namespace {
 
 void state_error(const LayerErrorReport& found, ErrorReport& error) {
     error.by_effect.push_back({std::string(kCloud), found.rms_relative});
-    if (error.receivers_checked > 0) {
-        return;
-    }
+    if (error.receivers_checked > 0) return;
     error.rms_relative = found.rms_relative;
     error.ci95[0] = found.ci95[0];
     error.ci95[1] = found.ci95[1];
@@ -57,9 +55,7 @@ void warn_of_layer(const formats::CloudLayer& layer, const Knobs& knobs,
 formats::Status add_layers(const formats::Scene& scene, std::span<const LayerLayout> layouts,
                            const Context& context, BakeResult& result) {
     auto baked = bake_layers({scene, layouts, result.knobs}, context, result.stages);
-    if (!baked) {
-        return std::move(baked).error();
-    }
+    if (!baked) return std::move(baked).error();
     result.asset.clouds = std::move(baked->clouds);
     const formats::CloudsView clouds = result.asset.clouds.view();
     for (std::size_t i = 0; i < layouts.size(); ++i) {

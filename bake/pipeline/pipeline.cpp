@@ -69,9 +69,7 @@ formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
     for (const ReceiverSet& set : bake.receivers) {
         const SubjectState* const subject =
             set.size() == 0 ? nullptr : &state_of(subjects, set.material);
-        if (subject == nullptr) {
-            continue;
-        }
+        if (subject == nullptr) continue;
         std::vector<Gatherer> gatherers = make_gatherers(bake, *subject, knobs, context);
         std::string group = group_of(gatherers);
         RowJob job{set, subject->layout, sink.encoder, total};
@@ -82,9 +80,7 @@ formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
                           return gather_rows(job, std::move(gatherers), context, rays);
                       });
         formats::SparseRows& part = gathered.rows;
-        if (context.cancelled()) {
-            break;
-        }
+        if (context.cancelled()) break;
         const RowLayout& layout = subject->layout;
         if (auto status = require_finite(part, layout.terms(), layout.bands(), log.back().name);
             !status) {
@@ -181,9 +177,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
                 knobs.cubemap_size, context.threads,
                 context.cache.empty() ? context.cache : context.cache / "test-lights");
         });
-        if (!made) {
-            return std::move(made).error();
-        }
+        if (!made) return std::move(made).error();
         lights = std::move(*made);
     }
     subjects = begin_subjects(unlit, result.plan, knobs);
@@ -204,27 +198,19 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
         run_step(Step::samples, bake, knobs, context, subjects, log);
     }
     run_step(Step::prepare, bake, knobs, context, subjects, log);
-    if (context.cancelled()) {
-        return interrupted();
-    }
+    if (context.cancelled()) return interrupted();
     formats::Result<GatheredRows> rows = bake_rows(bake, subjects, knobs, context, extras, log);
-    if (!rows) {
-        return std::move(rows).error();
-    }
+    if (!rows) return std::move(rows).error();
     warn_of_models(bake, subjects, knobs, context, result.warnings);
     std::vector<formats::Openness> openness = bake_all_openness(bake, subjects, context, log);
-    if (context.cancelled()) {
-        return interrupted();
-    }
+    if (context.cancelled()) return interrupted();
     result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(rows->rows),
                               std::move(openness));
     result.receiver_errors = std::move(rows->receiver_error);
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
         return check_file({bake, subjects, knobs, lights}, result.asset.view(), context, traced);
     });
-    if (context.cancelled()) {
-        return interrupted();
-    }
+    if (context.cancelled()) return interrupted();
     for (const std::string_view name : unmeasured_effects(bake.effects, result.plan)) {
         result.error.not_measured.emplace_back(name);
     }
@@ -250,9 +236,7 @@ formats::Status check_model_of(const EffectTable& effects, const formats::Scene&
     auto checked = run_stage(result.stages, "model check", [&](std::uint64_t&) {
         return check_model(scene, result.asset.view(), options, context);
     });
-    if (!checked) {
-        return std::move(checked).error();
-    }
+    if (!checked) return std::move(checked).error();
     result.model_error = std::move(*checked);
     return formats::ok_status();
 }
@@ -297,18 +281,14 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         return std::move(status).error();
     }
     formats::Result<RayScene> sky = RayScene::build({}, context.threads);
-    if (!sky) {
-        return std::move(sky).error();
-    }
+    if (!sky) return std::move(sky).error();
     std::optional<RayScene> hierarchy;
     if (needs_hierarchy(layout_rows(effects, scene, result.plan, wanted)) ||
         (has_volumes && !scene.primitives.empty()) || !emitters.lamps.empty()) {
         formats::Result<RayScene> built = run_stage(log, "hierarchy", [&](std::uint64_t&) {
             return RayScene::build(scene, context.threads);
         });
-        if (!built) {
-            return std::move(built).error();
-        }
+        if (!built) return std::move(built).error();
         hierarchy = std::move(*built);
     }
     const RayScene& rays = hierarchy ? *hierarchy : *sky;

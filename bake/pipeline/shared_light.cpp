@@ -64,9 +64,7 @@ std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knob
         for (const SubjectState& subject : subjects) {
             acts[subject.material] = subject.effects[e].acts ? 1 : 0;
         }
-        if (effect.make_light == nullptr || std::ranges::count(acts, 1) == 0) {
-            continue;
-        }
+        if (effect.make_light == nullptr || std::ranges::count(acts, 1) == 0) continue;
         const std::string name(effect.name);
         auto light = run_stage(log, name, name + ": scatterers", [&](std::uint64_t& rays) {
             const auto rows_of_medium =
@@ -89,9 +87,7 @@ std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knob
             return effect.make_light(
                 {bake, knobs, context, layouts, acts, rows_of_medium, look_through}, rays);
         });
-        if (light) {
-            return light;
-        }
+        if (light) return light;
     }
     return nullptr;
 }

@@ -55,9 +55,7 @@ void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warni
                 }
             }
         }
-        if (is_on) {
-            continue;
-        }
+        if (is_on) continue;
         if (!is_concerned(decided.effects, decided.scene, decided.knobs, effect)) {
             warnings.push_back(make_warning(
                 "", "--effects", concerns_nothing(effect),
@@ -78,9 +76,7 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
         layout_rows(decided.effects, decided.scene, decided.plan, decided.knobs);
     const auto matters = [&](const KnobSpec& knob) {
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
-            if (knob.matters(layouts[m], entries_of(decided.plan, m))) {
-                return true;
-            }
+            if (knob.matters(layouts[m], entries_of(decided.plan, m))) return true;
         }
         return knob.matters({}, decided.volume_plan);
     };

@@ -94,9 +94,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         entry.predicted_seconds = 0;
         entry.predicted_bytes = 0;
     }
-    if (volumes.empty()) {
-        return;
-    }
+    if (volumes.empty()) return;
     const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
     const auto for_each = [&](std::string_view name, auto&& visit) {
         for (std::size_t i = 0; i < volumes.works.size(); ++i) {
@@ -188,14 +186,10 @@ void bill_other_trials(const CostedBake& bake, Bill& bill) {
     exact.exact_rays = true;
     const CostInput traced{exact, bake.input.triangles, bake.input.receivers};
     for (const CostedSubject& subject : bake.subjects) {
-        if (!subject.depends_on_trials) {
-            continue;
-        }
+        if (!subject.depends_on_trials) continue;
         const double own = drawn * share_of(bake, subject);
         for (std::size_t e = 0; e < effects.size(); ++e) {
-            if (!subject.acts[e] || effects[e].gather.work == nullptr) {
-                continue;
-            }
+            if (!subject.acts[e] || effects[e].gather.work == nullptr) continue;
             // What is gathered in batches is kept from trial to trial.
             const bool is_kept = effects[e].gather.gather_batch != nullptr;
             const SubjectCost in_bake = bake.cost_of(subject, (is_kept ? 1 : kRounds) * own);

@@ -47,19 +47,13 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
     auto volumes = bake_volumes(
         {baked.parts.scene_or(inputs.scene), inputs.rays, baked.parts.layouts, knobs, &shown},
         context, result.stages, &measured);
-    if (!volumes) {
-        return std::move(volumes).error();
-    }
+    if (!volumes) return std::move(volumes).error();
     for (const MethodMeasure& measure : measured) {
         tell_method(measure, method_budget(knobs), baked.plan.entries);
     }
-    if (context.cancelled()) {
-        return interrupted_volumes();
-    }
+    if (context.cancelled()) return interrupted_volumes();
     baked.volumes = std::move(*volumes);
-    if (std::ranges::none_of(baked.plan.layouts, &VolumeLayout::has_nodes)) {
-        return baked;
-    }
+    if (std::ranges::none_of(baked.plan.layouts, &VolumeLayout::has_nodes)) return baked;
     formats::AssetView view = result.asset.view();
     view.volumes = baked.volumes.view();
     auto error =
@@ -69,9 +63,7 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
             traced += found ? found->events : 0;
             return found;
         });
-    if (!error) {
-        return std::move(error).error();
-    }
+    if (!error) return std::move(error).error();
     if (error->rays_checked > 0) {
         baked.error = std::move(*error);
     }
@@ -87,17 +79,11 @@ formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const 
          {Quality::draft, Quality::preview, Quality::production, Quality::reference}) {
         auto tried = bake_and_check(
             inputs, with_volume_quality(inputs.effects, result.knobs, quality), context, result);
-        if (!tried) {
-            return std::move(tried).error();
-        }
+        if (!tried) return std::move(tried).error();
         result.volume_trials.push_back({quality, tried->rms()});
-        if (best && tried->rms() > kLeastGain * best->rms()) {
-            break;
-        }
+        if (best && tried->rms() > kLeastGain * best->rms()) break;
         best = std::move(*tried);
-        if (best->rms() <= result.knobs.error_target) {
-            break;
-        }
+        if (best->rms() <= result.knobs.error_target) break;
     }
     return std::move(*best);
 }
@@ -105,18 +91,14 @@ formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const 
 // How far the light of volumes errs, where there is any.
 formats::Status measure_glow(const VolumeStages& inputs, const VolumeCheckOptions& effort,
                              const Context& context, BakeResult& result) {
-    if (result.glowing_volumes.empty()) {
-        return formats::ok_status();
-    }
+    if (result.glowing_volumes.empty()) return formats::ok_status();
     auto error = run_stage(
         result.stages, "self-check of light of volumes", "self-check", [&](std::uint64_t& traced) {
             auto found = check_glow(inputs.scene, result.asset.view(), effort, context);
             traced += found ? found->events : 0;
             return found;
         });
-    if (!error) {
-        return std::move(error).error();
-    }
+    if (!error) return std::move(error).error();
     if (error->rays_checked > 0) {
         result.error.by_effect.push_back({"light of volumes", error->rms_relative});
     } else {
@@ -199,9 +181,7 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
     const bool has_target = result.knobs.error_target > 0;
     auto baked = has_target ? bake_for_target(inputs, context, result)
                             : bake_and_check(inputs, result.knobs, context, result);
-    if (!baked) {
-        return std::move(baked).error();
-    }
+    if (!baked) return std::move(baked).error();
     if (has_target) {
         keep_knobs(inputs.effects, *baked, result.knobs);
     }
@@ -218,9 +198,7 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
     }
     result.volume_plan = std::move(baked->plan.entries);
     result.volume_error = std::move(baked->error);
-    if (result.asset.position.empty()) {
-        return formats::ok_status();
-    }
+    if (result.asset.position.empty()) return formats::ok_status();
     const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t& rays) {
         if (std::ranges::none_of(parts.layouts, &VolumeLayout::lights_surfaces)) {
             return dim_surfaces(inputs.scene, result.knobs, nullptr, context, result.asset, rays);
@@ -236,14 +214,10 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
 
 void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>& error,
                      std::vector<formats::Diagnostic>& warnings) {
-    if (!error || error->by_light.empty()) {
-        return;
-    }
+    if (!error || error->by_light.empty()) return;
     const bool asked = knobs.error_target > 0;
     const double limit = asked ? knobs.error_target : acceptable_error(knobs.quality);
-    if ((asked ? error->rms_relative : error->ci95[0]) <= limit) {
-        return;
-    }
+    if ((asked ? error->rms_relative : error->ci95[0]) <= limit) return;
     const auto worst =
         std::ranges::max_element(error->by_light, {}, &VolumeErrorReport::Part::rms_relative);
     warnings.push_back(formats::make_warning(

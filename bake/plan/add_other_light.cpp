@@ -20,9 +20,7 @@ void add_plane(std::span<const float> from, float factor, std::span<float> to) {
 
 std::uint64_t add_other_light(const OtherLight* light, const Receiver& receiver,
                               std::initializer_list<OtherLightShare> shares, const DenseRow& row) {
-    if (light == nullptr) {
-        return 0;
-    }
+    if (light == nullptr) return 0;
     std::vector<float> rows(light->bands * row.size());
     const std::uint64_t rays = light->add({receiver}, row.cubemap_size, rows);
     const auto plane = [&](std::size_t band) {

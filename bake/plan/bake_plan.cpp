@@ -13,9 +13,7 @@ namespace {
 constexpr double kShareOfError = 0.25;  // of the target, for all that is left out of a subject
 
 double least_bound(const EffectTable& effects, const PlanInput& input) {
-    if (!(input.knobs.error_target > 0)) {
-        return kLeastBound;
-    }
+    if (!(input.knobs.error_target > 0)) return kLeastBound;
     std::size_t rows = 0;
     for_each_rule(effects, [&](const EffectDescriptor&, const DecisionRule& rule, std::uint8_t) {
         rows += rule.concerns(input) ? 1 : 0;
@@ -49,9 +47,7 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
         const auto decide = [&](const EffectDescriptor& effect, const DecisionRule& rule,
                                 std::uint8_t number) {
             input.earlier = decisions;
-            if (!rule.concerns(input)) {
-                return;
-            }
+            if (!rule.concerns(input)) return;
             PlanEntry entry = rule.decide(input);
             entry.effect = effect.id;
             entry.rule = number;

@@ -27,9 +27,7 @@ const DecisionRule& rule_of(const EffectTable& effects, const PlanEntry& entry) 
 
 bool acts_on(const EffectDescriptor& effect, std::span<const PlanEntry> decisions,
              const RowLayout& layout) {
-    if (effect.acts != nullptr) {
-        return effect.acts(layout);
-    }
+    if (effect.acts != nullptr) return effect.acts(layout);
     return std::any_of(decisions.begin(), decisions.end(), [&](const PlanEntry& entry) {
         return entry.effect == effect.id && entry.rule == 0 && entry.on;
     });

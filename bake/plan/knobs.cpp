@@ -54,9 +54,7 @@ formats::Status start_from_target(Knobs& knobs, const EffectTable& effects,
 
 formats::Status take_given(Knobs& knobs, const KnobValues& given) {
     for (const auto& [knob, value] : given.values) {
-        if (knob->zero_is_auto && value == 0) {
-            continue;
-        }
+        if (knob->zero_is_auto && value == 0) continue;
         const auto& allowed = knob->allowed;
         if (!allowed.empty() && std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
             std::string list;
@@ -157,9 +155,7 @@ formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptio
             return std::move(status).error();
         }
     }
-    if (auto status = take_given(knobs, options.given); !status) {
-        return std::move(status).error();
-    }
+    if (auto status = take_given(knobs, options.given); !status) return std::move(status).error();
     if (options.cubemap_size != 0) {
         if (!formats::is_valid_cubemap_size(options.cubemap_size)) {
             return make_error(ErrorKind::usage, "", "--cubemap",

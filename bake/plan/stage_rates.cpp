@@ -5,9 +5,7 @@
 namespace opaline::bake {
 
 double StageRates::factor(const std::string& kind) const {
-    if (const auto known = kinds.find(kind); known != kinds.end()) {
-        return known->second.factor;
-    }
+    if (const auto known = kinds.find(kind); known != kinds.end()) return known->second.factor;
     double sum = 0;
     for (const auto& [name, learnt] : kinds) {
         sum += std::log(learnt.factor);

@@ -7,9 +7,7 @@ namespace opaline::bake {
 namespace {
 
 void split(std::span<const SurfaceSample> samples, std::span<std::uint32_t> order) {
-    if (order.size() <= kSamplesPerLeaf) {
-        return;
-    }
+    if (order.size() <= kSamplesPerLeaf) return;
     glm::vec3 low = samples[order[0]].position, high = low;
     for (const std::uint32_t i : order) {
         low = glm::min(low, samples[i].position);

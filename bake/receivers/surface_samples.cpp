@@ -96,12 +96,8 @@ std::vector<std::uint32_t> thin_out(const Neighbours& neighbours, std::vector<do
     while (surplus > 0) {
         limit = limit > kAlone ? kStep * limit : -1;
         for (const std::uint32_t i : left) {
-            if (surplus == 0) {
-                break;
-            }
-            if (weight[i] <= limit) {
-                continue;
-            }
+            if (surplus == 0) break;
+            if (weight[i] <= limit) continue;
             alive[i] = false;
             --surplus;
             for (const Neighbour& n : neighbours.of(i)) {
@@ -191,9 +187,7 @@ SurfacePoint move_within_triangle(const formats::Scene& scene, const SurfacePoin
     const glm::dvec3 n = glm::cross(ab, ac), at = target - a;
     const double v = glm::dot(glm::cross(at, ac), n) / glm::dot(n, n);
     const double w = glm::dot(glm::cross(ab, at), n) / glm::dot(n, n);
-    if (!(v >= 0 && w >= 0 && v + w <= 1)) {
-        return near;
-    }
+    if (!(v >= 0 && w >= 0 && v + w <= 1)) return near;
     return make_surface_point(scene, {near.primitive, near.first_index},
                               glm::vec3(1 - v - w, v, w));
 }

@@ -113,9 +113,7 @@ Clearance clearest_direction(std::span<const glm::vec3> normals) {
     constexpr int kIterations = 32;
     for (int i = 0; i < kIterations; ++i) {
         const float length = glm::length(d);
-        if (!(length > 1e-6f)) {
-            break;
-        }
+        if (!(length > 1e-6f)) break;
         d /= length;
         glm::vec3 worst(0);
         float smallest = 2;

@@ -17,9 +17,7 @@ void Moments::add(glm::dvec3 sample) {
 }
 
 void Moments::merge(const Moments& other) {
-    if (other.count == 0) {
-        return;
-    }
+    if (other.count == 0) return;
     const double sum = count + other.count;
     const glm::dvec3 deviation = other.mean - mean;
     mean += deviation * (other.count / sum);
@@ -31,9 +29,7 @@ void Moments::merge(const Moments& other) {
 }
 
 glm::dvec3 Moments::variance_of_mean() const {
-    if (groups >= kFewGroups) {
-        return group_squares / (count * (groups - 1));
-    }
+    if (groups >= kFewGroups) return group_squares / (count * (groups - 1));
     return count > 1 ? squares / (count * (count - 1)) : glm::dvec3(0);
 }
 
@@ -101,9 +97,7 @@ formats::Result<Estimate> estimate_pixels(
         }
         estimate.samples += round;
         estimate.seconds = elapsed();
-        if (options.seconds > 0 && estimate.seconds >= options.seconds) {
-            break;
-        }
+        if (options.seconds > 0 && estimate.seconds >= options.seconds) break;
     }
     return estimate;
 }

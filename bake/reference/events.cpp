@@ -56,9 +56,7 @@ bool survives(Path& path, float little, RandomStream& random) {
         chance = std::min(chance, kPatience);
     }
     if (chance < 1) {
-        if (!(random.next() < chance)) {
-            return false;
-        }
+        if (!(random.next() < chance)) return false;
         path.beta /= chance;
     }
     return true;
@@ -93,17 +91,13 @@ bool reflect_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
 bool reflect_as_mirror(const PathSpace& space, Path& path, const OpaquePoint& point,
                        const GlossyBrdf& brdf, RandomStream& random) {
     path.state = after_mirror(path.state);
-    if (!count_event(space, path)) {
-        return false;
-    }
+    if (!count_event(space, path)) return false;
     const glm::vec2 uv = random.next_pair();
     gather_light(space, path, point.from, true, random, [&](glm::vec3 d) {
         return is_above(point, d) ? eval_mirrored(brdf, d) : LobeValue{};
     });
     const auto sample = sample_mirrored(brdf, uv.x, uv.y);
-    if (!sample || !is_above(point, sample->direction)) {
-        return false;
-    }
+    if (!sample || !is_above(point, sample->direction)) return false;
     path.beta *= sample->weight;
     if (goes_on_filtering(space, path)) {
         path.filter->scatter_on_facets(path.direction, point.normal, static_cast<float>(brdf.alpha),
@@ -129,9 +123,7 @@ bool scatter_diffusely(const PathSpace& space, Path& path, const OpaquePoint& po
     const glm::vec3 reflected = albedo * point.surface.reflect,
                     transmitted = albedo * point.surface.transmit;
     const float there = mean(transmitted), here = mean(reflected);
-    if (!(there > 0)) {
-        return reflect_diffusely(space, path, point, reflected, random);
-    }
+    if (!(there > 0)) return reflect_diffusely(space, path, point, reflected, random);
     const float chance = there / (there + here);
     return here > 0 && !(random.next() < chance)
                ? reflect_diffusely(space, path, point, reflected / (1 - chance), random)
@@ -170,9 +162,7 @@ bool cross_facets(const PathSpace& space, Path& path, const Crossing& crossing,
                            after_crossing(path.state, crossing.beyond.empty())};
     boundary.reflects = !crossing.is_own_mirror && is_wanted(space, here.state);
     boundary.transmits = is_wanted(space, beyond.state);
-    if (!count_event(space, path) || (!boundary.reflects && !boundary.transmits)) {
-        return false;
-    }
+    if (!count_event(space, path) || (!boundary.reflects && !boundary.transmits)) return false;
     random.start_event();
     const glm::vec2 uv = random.next_pair();
     const float choice = random.next();
@@ -195,9 +185,7 @@ bool cross_facets(const PathSpace& space, Path& path, const Crossing& crossing,
                                   transmits ? &beyond : &here};
                       });
     const auto sample = sample_rough_boundary(boundary, uv.x, uv.y, choice);
-    if (!sample || !is_on_side(sample->direction, sample->transmits)) {
-        return false;
-    }
+    if (!sample || !is_on_side(sample->direction, sample->transmits)) return false;
     if (goes_on_filtering(space, path)) {
         path.filter->scatter_on_facets(path.direction, crossing.normal, crossing.alpha,
                                        sample->direction, sample->transmits ? crossing.ratio : 0);
@@ -227,9 +215,7 @@ bool reflect_at_surface(const PathSpace& space, Path& path, const OpaquePoint& p
     const float mirrored = may_mirror ? mean(brdf.mirrored_albedo) : 0;
     const float diffuse =
         is_wanted(space, after_diffuse(path.state)) ? mean(brdf.diffuse_albedo) : 0;
-    if (!(mirrored + diffuse > 0)) {
-        return false;
-    }
+    if (!(mirrored + diffuse > 0)) return false;
     bool mirrors = mirrored > 0;
     if (mirrored > 0 && diffuse > 0) {
         const float chance = mirrored / (mirrored + diffuse);
@@ -251,16 +237,12 @@ void pass_boundary(Path& path, const Crossing& crossing) {
 
 bool reflect_or_refract(const PathSpace& space, Path& path, const Crossing& crossing,
                         RandomStream& random) {
-    if (crossing.alpha > 0) {
-        return cross_facets(space, path, crossing, random);
-    }
+    if (crossing.alpha > 0) return cross_facets(space, path, crossing, random);
     const float reflectance = crossing.split.reflectance;
     const bool may_reflect = reflectance > 0 && is_wanted(space, after_reflection(path.state));
     const bool may_pass =
         reflectance < 1 && is_wanted(space, after_crossing(path.state, crossing.beyond.empty()));
-    if (!count_event(space, path) || (!may_reflect && !may_pass)) {
-        return false;
-    }
+    if (!count_event(space, path) || (!may_reflect && !may_pass)) return false;
     path.pdf = 0;
     random.start_event();
     bool reflects = may_reflect;

@@ -31,13 +31,9 @@ struct SidedLobe {
 template <class Eval>
 void gather_sky(const PathSpace& space, Path& path, RandomStream& random, Eval&& eval) {
     const glm::vec3 d = sample_light(space.light, random);
-    if (d == glm::vec3(0)) {
-        return;
-    }
+    if (d == glm::vec3(0)) return;
     const SidedLobe sided = eval(d);
-    if (!(sided.lobe.pdf > 0)) {
-        return;
-    }
+    if (!(sided.lobe.pdf > 0)) return;
     const LightSide& side = *sided.side;
     const glm::vec3 passing =
         see_sky(space, side.from, d, side.stack, side.state, path.key, random);

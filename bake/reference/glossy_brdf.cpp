@@ -41,9 +41,7 @@ std::optional<LobeSample> sample_mirrored(const GlossyBrdf& brdf, float u, float
     const glm::dvec3 h = sample_visible_normal(o, brdf.alpha, double{u}, double{v});
     const double o_h = glm::dot(o, h);
     const glm::dvec3 l = glm::normalize(2 * o_h * h - o);
-    if (!(o_h > 0) || !(l.z > 0)) {
-        return std::nullopt;
-    }
+    if (!(o_h > 0) || !(l.z > 0)) return std::nullopt;
     LobeSample sample;
     sample.direction = glm::normalize(brdf.frame.to_world(glm::vec3(l)));
     sample.weight = glm::vec3(facet_reflectance(brdf, o_h) * brdf.compensation *

@@ -51,18 +51,14 @@ glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
 
 formats::Result<HitScene> HitScene::build(const Scene& scene, unsigned threads) {
     auto triangles = EmbreeScene::build(scene, threads, true);
-    if (!triangles) {
-        return std::move(triangles).error();
-    }
+    if (!triangles) return std::move(triangles).error();
     return HitScene(scene, std::move(*triangles));
 }
 
 HitScene::HitScene(const Scene& scene, EmbreeScene triangles)
     : triangles_(std::move(triangles)), scene_(&scene) {
     const glm::vec3 low = triangles_.low(), high = triangles_.high();
-    if (low.x > high.x) {
-        return;
-    }
+    if (low.x > high.x) return;
     centre_ = 0.5f * low + 0.5f * high;
     const glm::vec3 farthest = glm::max(glm::abs(low), glm::abs(high));
     // A product, a sum, and the hit's distance: a few half ulps.
@@ -77,9 +73,7 @@ HitScene::HitScene(const Scene& scene, EmbreeScene triangles)
 std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::vec3 direction,
                                                 float reach, std::uint32_t key) const {
     assert(origin.free >= 0);
-    if (!(origin.free <= reach)) {
-        return std::nullopt;
-    }
+    if (!(origin.free <= reach)) return std::nullopt;
     LeavingContext context{{}, triangles_, origin};
     rtcInitIntersectContext(&context.embree);
     // A straight line leaves a plane once; rounding causes a second hit.
@@ -91,9 +85,7 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
     RTCRayHit ray{make_ray(origin, direction, nearest, reach, key), {}};
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(triangles_.handle(), &context.embree, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-        return std::nullopt;
-    }
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     SurfaceHit hit;
     hit.primitive = triangles_.geometry(ray.hit.geomID).primitive;
     hit.triangle = ray.hit.primID;

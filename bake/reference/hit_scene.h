@@ -113,9 +113,7 @@ RayOrigin HitScene::cross(const RayOrigin& origin, glm::vec3 direction, const Su
     visit(hit);
     for (std::size_t i = 1; i < beyond.triangle.size(); ++i) {
         const auto other = closest_hit(here, direction, end, key);
-        if (!other) {
-            break;
-        }
+        if (!other) break;
         here.add({other->primitive, other->triangle});
         beyond.add({other->primitive, other->triangle});
         const bool is_at_edge = std::min({other->u, other->v, 1 - other->u - other->v}) < kAtEdge;

@@ -41,9 +41,7 @@ float mean_brightness(const formats::Scene& scene, std::uint32_t primitive,
     const Primitive& p = scene.primitives[primitive];
     const Material& material = scene.materials[p.material];
     const float whole = sum_of(material.emission);
-    if (material.emission_image == formats::kNone || p.texcoord.empty()) {
-        return whole;
-    }
+    if (material.emission_image == formats::kNone || p.texcoord.empty()) return whole;
     constexpr int steps = 4;
     float mean = 0;
     for (int i = 0; i < steps * steps; ++i) {
@@ -71,9 +69,7 @@ LampSampler make_lamp_sampler(const formats::Scene& scene) {
     for (std::uint32_t i = 0; i < scene.primitives.size(); ++i) {
         const Primitive& p = scene.primitives[i];
         const Material& material = scene.materials[p.material];
-        if (!is_emissive(material)) {
-            continue;
-        }
+        if (!is_emissive(material)) continue;
         lamps.density[i].assign(p.index.size() / 3, 0.0f);
         for (std::uint32_t t = 0; t < p.index.size() / 3; ++t) {
             const auto corner = corners_of(p, t);
@@ -82,9 +78,7 @@ LampSampler make_lamp_sampler(const formats::Scene& scene) {
             const glm::dvec3 cross = glm::cross(b - a, c - a);
             const double length = glm::length(cross);
             const auto brightness = static_cast<double>(mean_brightness(scene, i, t));
-            if (!(length > 0) || !std::isfinite(length)) {
-                continue;
-            }
+            if (!(length > 0) || !std::isfinite(length)) continue;
             power += 0.5 * length * brightness * (is_two_sided(material) ? 2 : 1);
             lamps.cumulative.push_back(power);
             // For now in units of the power; divided by the sum below.
@@ -131,17 +125,13 @@ std::optional<SeenTriangle> sample_triangle(const LampSampler& lamps, const form
     const glm::vec3 way = weight[0] * p.position[corner[0]] + weight[1] * p.position[corner[1]] +
                           weight[2] * p.position[corner[2]] - from;
     const float square = glm::dot(way, way);
-    if (!(square > 0)) {
-        return std::nullopt;
-    }
+    if (!(square > 0)) return std::nullopt;
     SeenTriangle seen{one.primitive, one.triangle, way / std::sqrt(square), glm::vec3(0), 0};
     float cosine = -glm::dot(seen.direction, one.normal);
     if (one.is_two_sided) {
         cosine = std::abs(cosine);
     }
-    if (!(cosine > 0)) {
-        return std::nullopt;
-    }
+    if (!(cosine > 0)) return std::nullopt;
     seen.pdf = one.density * square / cosine;
     seen.radiance = vec_of(emission_at(scene, one.primitive, corner, weight));
     return seen;
@@ -149,9 +139,7 @@ std::optional<SeenTriangle> sample_triangle(const LampSampler& lamps, const form
 
 float pdf_triangle(const LampSampler& lamps, const SurfaceHit& hit, glm::vec3 from) {
     const std::vector<float>& density = lamps.density[hit.primitive];
-    if (density.empty()) {
-        return 0;
-    }
+    if (density.empty()) return 0;
     const glm::vec3 way = hit.position - from;
     const float square = glm::dot(way, way);
     const float cosine = std::abs(glm::dot(way, hit.flat)) / std::sqrt(square);
@@ -164,23 +152,17 @@ std::optional<ArrivingLight> sample_punctual(const LampSampler& lamps, glm::vec3
     for (const formats::Light& light : lamps.lights) {
         sum += static_cast<double>(sum_of(light_at(light, at).irradiance));
     }
-    if (!(sum > 0)) {
-        return std::nullopt;
-    }
+    if (!(sum > 0)) return std::nullopt;
     double choice = lamps.lights.size() > 1 ? static_cast<double>(random.next()) * sum : 0;
     ArrivingLight last;
     double share = 1;
     for (const formats::Light& light : lamps.lights) {
         const ArrivingLight arriving = light_at(light, at);
         const auto own = static_cast<double>(sum_of(arriving.irradiance));
-        if (!(own > 0)) {
-            continue;
-        }
+        if (!(own > 0)) continue;
         last = arriving;
         share = own / sum;
-        if (choice < own) {
-            break;
-        }
+        if (choice < own) break;
         choice -= own;
     }
     last.irradiance = static_cast<float>(1 / share) * last.irradiance;

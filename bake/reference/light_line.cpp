@@ -16,16 +16,12 @@ constexpr float kEndless = std::numeric_limits<float>::infinity();
 /// tracking [Novak2014]: the share that is left at each collision with the densest channel.
 glm::vec3 transmittance(const ReferenceMedium& medium, glm::vec3 from, glm::vec3 direction,
                         float distance, RandomStream& random) {
-    if (!medium.field || !medium.field->has_density()) {
-        return glm::exp(-medium.sigma_t * distance);
-    }
+    if (!medium.field || !medium.field->has_density()) return glm::exp(-medium.sigma_t * distance);
     const float densest = std::max({medium.sigma_t.x, medium.sigma_t.y, medium.sigma_t.z});
     glm::vec3 left(1);
     for (float at = 0; left != glm::vec3(0);) {
         at -= std::log(1 - random.next()) / densest;
-        if (!(at < distance)) {
-            break;
-        }
+        if (!(at < distance)) break;
         left *= 1.0f - medium.field->density(from + at * direction) / densest * medium.sigma_t;
     }
     return left;
@@ -45,9 +41,7 @@ glm::vec3 pass_volumes(const ReferenceScene& scene, glm::vec3 start, glm::vec3 d
 // Between surfaces, in whatever fills the space there.
 glm::vec3 pass_space(const ReferenceScene& scene, const SurroundingMedia& stack, glm::vec3 from,
                      glm::vec3 direction, float reach, RandomStream& random) {
-    if (stack.empty()) {
-        return pass_volumes(scene, from, direction, reach, random);
-    }
+    if (stack.empty()) return pass_volumes(scene, from, direction, reach, random);
     return std::isinf(reach)
                ? glm::vec3(0)
                : transmittance(scene.media[stack.top()], from, direction, reach, random);
@@ -64,26 +58,18 @@ glm::vec3 pass_line(const PathSpace& space, LightLine line, SurroundingMedia& st
     while (const auto hit = surfaces.closest_hit(line.from, line.direction, line.reach, line.key)) {
         passing *=
             pass_space(scene, stack, line.from.position, line.direction, hit->distance, random);
-        if (hit->primitive == line.primitive && hit->triangle == line.triangle) {
-            return passing;
-        }
-        if (++steps > kMostSteps) {
-            return glm::vec3(0);
-        }
+        if (hit->primitive == line.primitive && hit->triangle == line.triangle) return passing;
+        if (++steps > kMostSteps) return glm::vec3(0);
         const std::uint32_t material = surfaces.scene().primitives[hit->primitive].material;
         const std::uint32_t medium = scene.medium_of[material];
-        if (medium == formats::kNone) {
-            return glm::vec3(0);
-        }
+        if (medium == formats::kNone) return glm::vec3(0);
         const bool was_out = stack.empty();
         const std::uint32_t before = stack.top();
         const float eta = index_in(scene, stack);
         const RayOrigin beyond =
             cross_boundary(scene, line.from, line.direction, *hit, line.key, stack);
         if (before != stack.top()) {
-            if (!is_matched(index_in(scene, stack) / eta)) {
-                return glm::vec3(0);
-            }
+            if (!is_matched(index_in(scene, stack) / eta)) return glm::vec3(0);
             state = after_crossing(state, stack.empty());
             if (was_out) {
                 passing *= base_color_at(surfaces.scene(), *hit);

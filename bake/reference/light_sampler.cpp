@@ -170,9 +170,7 @@ glm::vec3 eval_light(const LightSampler& light, glm::vec3 direction) {
 }
 
 glm::vec3 sample_light(const LightSampler& light, RandomStream& random) {
-    if (light.map_probability <= 0 && light.disc_probability.empty()) {
-        return glm::vec3(0);
-    }
+    if (light.map_probability <= 0 && light.disc_probability.empty()) return glm::vec3(0);
     const glm::dvec2 choices(random.next_pair());
     const glm::vec2 place = random.next_pair();
     double choice = choices.x;
@@ -183,9 +181,7 @@ glm::vec3 sample_light(const LightSampler& light, RandomStream& random) {
         }
         choice -= light.disc_probability[i];
     }
-    if (light.map_probability <= 0) {
-        return glm::vec3(0);
-    }
+    if (light.map_probability <= 0) return glm::vec3(0);
     if (choices.y < kUniformShare) {
         return light.world_from_light * cell_direction(place.x, place.y, 1, 1);
     }

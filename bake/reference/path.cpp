@@ -80,9 +80,7 @@ void meet_emission(const PathSpace& space, Path& path, const SurfaceHit& hit,
                    const TextureView* view) {
     const formats::Scene& scene = space.scene.surfaces.scene();
     const formats::Material& material = scene.materials[scene.primitives[hit.primitive].material];
-    if (!counts_lamps(space) || !is_seen_to_glow(material, path.direction, hit.flat)) {
-        return;
-    }
+    if (!counts_lamps(space) || !is_seen_to_glow(material, path.direction, hit.flat)) return;
     const float weight =
         path.pdf > 0 ? path.pdf / (path.pdf + pdf_triangle(space.scene.lamps, hit, path.vertex))
                      : 1.0f;
@@ -153,9 +151,7 @@ bool advance(const PathSpace& space, Path& path, RandomStream& random) {
         const float margin = surfaces.rounding();
         bool is_near_surface = false;
         const auto find = [&](float reach) -> std::optional<SurfaceHit> {
-            if (reach + margin < space.scene.clearance(path.origin.position)) {
-                return std::nullopt;
-            }
+            if (reach + margin < space.scene.clearance(path.origin.position)) return std::nullopt;
             const auto found =
                 surfaces.closest_hit(path.origin, path.direction, reach + margin, path.key);
             is_near_surface = found.has_value();

@@ -100,9 +100,7 @@ bool PathFilter::arrive(const formats::Scene& scene, glm::vec3 direction, const 
     is_curved_ = to_v != glm::vec3(0) || to_w != glm::vec3(0);
     const bool has_texture =
         has_pyramid(filtering_->pyramids, scene.materials[p.material]) && !p.texcoord.empty();
-    if (!is_curved_ && !has_texture) {
-        return false;
-    }
+    if (!is_curved_ && !has_texture) return false;
     const glm::vec3 a = p.position[corner[0]];
     const glm::vec3 v = p.position[corner[1]] - a, w = p.position[corner[2]] - a;
     const glm::vec3 n = glm::cross(v, w);
@@ -178,9 +176,7 @@ void PathFilter::mirror(glm::vec3 direction, glm::vec3 normal) {
 
 void PathFilter::refract(glm::vec3 direction, glm::vec3 normal, float ratio) {
     const Refracted event(direction, normal, ratio);
-    if (event.is_total_reflection()) {
-        return;
-    }
+    if (event.is_total_reflection()) return;
     for (Block& block : blocks()) {
         block.dD = event.change(block.dD, normal_change(block, normal));
     }

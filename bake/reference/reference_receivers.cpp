@@ -150,9 +150,7 @@ formats::Result<ReferenceImage> estimate_image(const PathSpace& space,
                             const glm::vec3 ray = to_vec3(runtime::view_ray(camera, frame, x, y));
                             return trace_ray(space, eye, ray, random, around, axes.spread(ray));
                         });
-    if (!estimate) {
-        return std::move(estimate).error();
-    }
+    if (!estimate) return std::move(estimate).error();
     ReferenceImage image{{camera.width, camera.height, {}}, {camera.width, camera.height, {}}, {}};
     for (const Moments& m : estimate->pixel) {
         image.mean.pixel.push_back(to_rgb(m.mean));

@@ -13,9 +13,7 @@ namespace opaline::bake {
 formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene,
                                                      unsigned threads) {
     auto surfaces = HitScene::build(scene, threads);
-    if (!surfaces) {
-        return std::move(surfaces).error();
-    }
+    if (!surfaces) return std::move(surfaces).error();
     ReferenceScene result{std::move(*surfaces),    {}, {}, false, make_volume_space(scene), {},
                           make_lamp_sampler(scene)};
     float densest = 0;
@@ -63,9 +61,7 @@ std::vector<int> count_leaving(const ReferenceScene& scene, glm::vec3 point, glm
     for (std::uint32_t i = 0; i < kMostSteps; ++i) {
         const auto hit =
             scene.surfaces.closest_hit(from, direction, std::numeric_limits<float>::infinity());
-        if (!hit) {
-            break;
-        }
+        if (!hit) break;
         const RayOrigin beyond =
             scene.surfaces.cross(from, direction, *hit, 0, [&](const SurfaceHit& met) {
                 if (const std::uint32_t medium = medium_at(scene, met); medium != formats::kNone) {
@@ -90,9 +86,7 @@ RayOrigin cross_boundary(const ReferenceScene& scene, const RayOrigin& origin, g
 
 SurroundingMedia surrounding_media(const ReferenceScene& scene, glm::vec3 point, glm::vec3 up) {
     SurroundingMedia stack;
-    if (scene.media.empty()) {
-        return stack;
-    }
+    if (scene.media.empty()) return stack;
     const glm::vec3 side = glm::normalize(
         glm::cross(up, std::abs(up.x) > 0.7f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
     std::vector<std::vector<int>> votes;

@@ -81,9 +81,7 @@ std::optional<BoundarySample> sample_rough_boundary(const RoughBoundary& b, floa
     const glm::dvec3& o = b.to_eye;
     const glm::dvec3 h = sample_visible_normal(o, b.alpha, double{u}, double{v});
     const double o_h = glm::dot(o, h);
-    if (!(o_h > 0)) {
-        return std::nullopt;
-    }
+    if (!(o_h > 0)) return std::nullopt;
     const auto [reflectance, along] = facet_of(o_h, b.ratio);
     double chance = 1, share = 1;
     BoundarySample sample;
@@ -94,23 +92,17 @@ std::optional<BoundarySample> sample_rough_boundary(const RoughBoundary& b, floa
         sample.transmits = b.transmits;
         share = b.transmits ? 1 - reflectance : reflectance;
     }
-    if (!(share > 0)) {
-        return std::nullopt;
-    }
+    if (!(share > 0)) return std::nullopt;
     glm::dvec3 l;
     double pdf = chance;
     if (sample.transmits) {
         l = glm::normalize(along * h - o / b.ratio);
-        if (!(l.z < 0)) {
-            return std::nullopt;
-        }
+        if (!(l.z < 0)) return std::nullopt;
         pdf *= pdf_visible(b, h) * normals_per_direction(o_h, glm::dot(l, h), b.ratio);
         share *= smith_masking(-l.z, b.alpha);
     } else {
         l = glm::normalize(2 * o_h * h - o);
-        if (!(l.z > 0)) {
-            return std::nullopt;
-        }
+        if (!(l.z > 0)) return std::nullopt;
         pdf *= pdf_visible_reflection(o.z, h, b.alpha);
         share *= smith_shadowing(o.z, l.z, b.alpha);
     }

@@ -33,9 +33,7 @@ glm::vec3 shading_normal(const formats::Scene& scene, const SurfaceHit& hit) {
     const glm::mat3 frame(along, tangent.w * glm::cross(hit.smooth, along), hit.smooth);
     const glm::vec3 mapped = frame * coded_normal(scene, place, material.normal_scale);
     const float size = glm::length(mapped);
-    if (!(size > 0)) {
-        return hit.smooth;
-    }
+    if (!(size > 0)) return hit.smooth;
     constexpr float kLeastCosine = 0.01f;
     const glm::vec3 normal = mapped / size;
     const float cosine = glm::dot(normal, hit.flat);

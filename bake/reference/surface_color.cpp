@@ -32,9 +32,7 @@ OpaqueSurface opaque_surface(const formats::Scene& scene, const SurfacePlace& pl
         surface.reflect = to_vec(material.sheet->reflect);
         surface.transmit = to_vec(material.sheet->transmit);
     }
-    if (gloss.is_diffuse()) {
-        return surface;
-    }
+    if (gloss.is_diffuse()) return surface;
     surface.metallic = gloss.metallic;
     surface.roughness = gloss.roughness;
     const glm::vec3 factor = roughness_texture(scene, place, view);

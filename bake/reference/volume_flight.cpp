@@ -61,9 +61,7 @@ VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm:
     // Radiance of volumes from `gathered` to `end`, along which the bounds are `sigma`.
     float gathered = 0;
     const auto glow_up_to = [&](float end, glm::vec3 sigma) {
-        if (!gathers_glow || !(end > gathered)) {
-            return;
-        }
+        if (!gathers_glow || !(end > gathered)) return;
         flight.emitted += gather_glow(space, from, direction, gathered, end, random, [&](float t) {
             const glm::vec3 passing = passing_share(depth + (t - gathered) * sigma, channel);
             return flight.weight * passing / glm::dot(odds, passing);
@@ -96,9 +94,7 @@ VolumeFlight sample_volume_flight(const VolumeSpace& space, glm::vec3 from, glm:
                 const float part = segment->bound[i] * space.volumes[i].sigma_t[channel];
                 if (part > 0) {
                     v = i;
-                    if (u < part) {
-                        break;
-                    }
+                    if (u < part) break;
                     u -= part;
                 }
             }
@@ -159,9 +155,7 @@ glm::vec3 estimate_transmittance(const VolumeSpace& space, glm::vec3 from, glm::
             passing *= glm::max(glm::vec3(0), 1.0f - sigma_t / densest);
             const float most = largest(passing);
             if (most < kLittle) {
-                if (!(random.next() * kLittle < most)) {
-                    return glm::vec3(0);
-                }
+                if (!(random.next() * kLittle < most)) return glm::vec3(0);
                 passing *= kLittle / most;
             }
             left = -std::log(1 - random.next());

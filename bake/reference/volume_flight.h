@@ -64,9 +64,7 @@ Flight sample_flight(const ReferenceMedium& medium, glm::vec3 beta, RandomStream
         flight.surface.reset();
     }
     flight.distance = flight.surface ? flight.surface->distance : free;
-    if (std::isinf(flight.distance)) {
-        return flight;
-    }
+    if (std::isinf(flight.distance)) return flight;
     if (is_grey) {
         flight.weight = flight.surface ? glm::vec3(1) : medium.sigma_s / sigma;
         return flight;

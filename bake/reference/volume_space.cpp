@@ -35,9 +35,7 @@ void bound_density(TrackedVolume& v) {
             for (b.x = 0; b.x < grid.extent.x; ++b.x) {
                 const glm::ivec3 brick = grid.first_brick + b;
                 const std::uint32_t number = grid.brick_at(brick);
-                if (number == Grid::kEmpty) {
-                    continue;
-                }
+                if (number == Grid::kEmpty) continue;
                 const std::span<const float> value = grid.brick(number);
                 // Corner c of eight: bit set, the cell before this one along that axis.
                 std::array<float, 8> most{};
@@ -116,18 +114,14 @@ bool LatticeRay::start(glm::vec3 o, glm::vec3 d, float from, float to, glm::ivec
     for (int a = 0; a < 3; ++a) {
         // A ray along a face: neither a product 0 * inf nor a division by 0.
         if (d[a] == 0) {
-            if (!(o[a] >= low[a] && o[a] < high[a])) {
-                return false;
-            }
+            if (!(o[a] >= low[a] && o[a] < high[a])) return false;
             continue;
         }
         const float s = (low[a] - o[a]) / d[a], t = (high[a] - o[a]) / d[a];
         begin = std::max(begin, std::min(s, t));
         reach = std::min(reach, std::max(s, t));
     }
-    if (!(begin < reach)) {
-        return false;
-    }
+    if (!(begin < reach)) return false;
     const glm::vec3 at = o + begin * d;
     for (int a = 0; a < 3; ++a) {
         const float where = std::clamp(at[a], low[a], high[a]);
@@ -234,14 +228,10 @@ std::optional<VolumeSegment> VolumeMarch::next() {
                 segment.begin = std::min(segment.begin, std::max(at_, cursor_[i].begin));
             }
         }
-        if (!(segment.begin < reach_)) {
-            return std::nullopt;
-        }
+        if (!(segment.begin < reach_)) return std::nullopt;
         for (std::size_t i = 0; i < count; ++i) {
             const Cursor& c = cursor_[i];
-            if (c.is_done) {
-                continue;
-            }
+            if (c.is_done) continue;
             const bool is_inside = c.begin <= segment.begin;
             segment.end = std::min(segment.end, is_inside ? c.end : c.begin);
             if (is_inside) {
@@ -253,9 +243,7 @@ std::optional<VolumeSegment> VolumeMarch::next() {
         for (std::size_t i = 0; i < count; ++i) {
             skip_empty(i);
         }
-        if (segment.end > segment.begin && segment.sigma_t != glm::vec3(0)) {
-            return segment;
-        }
+        if (segment.end > segment.begin && segment.sigma_t != glm::vec3(0)) return segment;
     }
 }
 

@@ -17,9 +17,7 @@ namespace {
 std::vector<std::uint32_t> order_of(const ReceiverSet& set, const RowLayout& layout) {
     std::vector<std::uint32_t> order(set.size());
     std::iota(order.begin(), order.end(), 0u);
-    if (!layout.translucent) {
-        return order;
-    }
+    if (!layout.translucent) return order;
     std::vector<glm::vec3> positions;
     positions.reserve(set.size());
     for (const BodyPoint& point : set.inside) {

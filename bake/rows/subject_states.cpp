@@ -99,9 +99,7 @@ void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Conte
             return 0;
         };
         std::uint64_t uncounted = 0;
-        if (concerned.empty() || context.cancelled()) {
-            continue;
-        }
+        if (concerned.empty() || context.cancelled()) continue;
         if (own.stage.empty()) {
             run_all(uncounted);
         } else if (!own.by_subject) {

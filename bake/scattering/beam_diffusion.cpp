@@ -20,9 +20,7 @@ BeamDiffusion make_beam_diffusion(double sigma_s_prime, double sigma_a, double e
     constexpr int kDepths = 128;
     BeamDiffusion profile;
     const Dipole mean = make_dipole(DipoleKind::better, sigma_s_prime, sigma_a, eta);
-    if (mean.w_flux == 0 && mean.w_phi == 0) {
-        return profile;
-    }
+    if (mean.w_flux == 0 && mean.w_phi == 0) return profile;
     profile.sigma_t_prime = 1 / mean.z_real;
     const double gap = mean.z_virtual - mean.z_real;  // 4 A D, whatever the depth
     for (int i = 0; i < kDepths; ++i) {

@@ -55,9 +55,7 @@ Dipole make_dipole(DipoleKind kind, double sigma_s_prime, double sigma_a, double
 }
 
 double eval_dipole(const Dipole& dipole, double r) {
-    if (dipole.w_flux == 0 && dipole.w_phi == 0) {
-        return 0;
-    }
+    if (dipole.w_flux == 0 && dipole.w_phi == 0) return 0;
     const double d_real = std::hypot(r, dipole.z_real);
     const double d_virtual = std::hypot(r, dipole.z_virtual);
     const double k = dipole.sigma_tr;
@@ -77,9 +75,7 @@ double eval_dipole(const Dipole& dipole, double r) {
 }
 
 double dipole_tail(const Dipole& dipole, double a) {
-    if (dipole.w_flux == 0 && dipole.w_phi == 0) {
-        return 0;
-    }
+    if (dipole.w_flux == 0 && dipole.w_phi == 0) return 0;
     const double d_real = std::hypot(a, dipole.z_real);
     const double d_virtual = std::hypot(a, dipole.z_virtual);
     const double k = dipole.sigma_tr;

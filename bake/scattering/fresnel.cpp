@@ -20,13 +20,9 @@ double fresnel_transmittance(double cosine, double eta) {
     if (eta == 1) {
         return 1;  // no boundary
     }
-    if ((1 - c * c) >= eta * eta) {
-        return 0;
-    }
+    if ((1 - c * c) >= eta * eta) return 0;
     const double t = refracted_cosine(c, eta);
-    if (c == 0 || t == 0) {
-        return 0;
-    }
+    if (c == 0 || t == 0) return 0;
     // 1 - r^2 of each polarisation: 4 a b / (a + b)^2, a product that does not cancel.
     const double s = 4 * c * eta * t / std::pow(c + eta * t, 2);
     const double p = 4 * eta * c * t / std::pow(eta * c + t, 2);
@@ -61,9 +57,7 @@ FresnelMoments fresnel_moments(double eta) {
 }
 
 double fitted_diffuse_reflectance(double eta) {
-    if (eta < 1) {
-        return -0.4399 + 0.7099 / eta - 0.3319 / (eta * eta) + 0.0636 / (eta * eta * eta);
-    }
+    if (eta < 1) return -0.4399 + 0.7099 / eta - 0.3319 / (eta * eta) + 0.0636 / (eta * eta * eta);
     return -1.440 / (eta * eta) + 0.710 / eta + 0.668 + 0.0636 * eta;
 }
 

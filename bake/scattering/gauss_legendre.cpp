@@ -23,9 +23,7 @@ GaussLegendre make_gauss_legendre(int n) {
             slope = n * (x * p - before) / (x * x - 1);
             const double delta = p / slope;
             x -= delta;
-            if (std::abs(delta) < 1e-16) {
-                break;
-            }
+            if (std::abs(delta) < 1e-16) break;
         }
         rule.node[count - 1 - i] = 0.5 * (1 + x);
         rule.weight[count - 1 - i] = 1 / ((1 - x * x) * slope * slope);

@@ -66,9 +66,7 @@ std::vector<PathNode> place_path_nodes(const PathRule& rule, const PathMedium& m
                                        double length) {
     std::vector<PathNode> nodes;
     const double sigma_m = medium.sigma_m;
-    if (!(length > 0) || (std::isinf(length) && !(sigma_m > 0))) {
-        return nodes;
-    }
+    if (!(length > 0) || (std::isinf(length) && !(sigma_m > 0))) return nodes;
     const double lambda = -std::expm1(-sigma_m * length);
     for (std::size_t i = 0; i < rule.position.size(); ++i) {
         // In the limit sigma_m -> 0 the rule applies to s directly; also where the product

@@ -147,9 +147,7 @@ unsigned choose_phase_terms(const PhaseSeries& series, double tolerance) {
     constexpr unsigned kMostDegrees = 5;
     assert(series.lambda.size() >= kMostDegrees);
     for (unsigned degrees = 1; degrees < kMostDegrees; ++degrees) {
-        if (phase_rms_relative(series, degrees * degrees) <= tolerance) {
-            return degrees * degrees;
-        }
+        if (phase_rms_relative(series, degrees * degrees) <= tolerance) return degrees * degrees;
     }
     return kMostDegrees * kMostDegrees;
 }

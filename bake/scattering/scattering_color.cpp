@@ -16,9 +16,7 @@ double scattering_color(double albedo, double g) {
 }
 
 double albedo_of_color(double color, double g) {
-    if (!(color > 0)) {
-        return 0;
-    }
+    if (!(color > 0)) return 0;
     // 0.139 s^2 - b s + 1 - colour = 0, its smaller root without a difference of large numbers.
     const double b = 1 + kSquare + kBelow * color, c = 1 - color;
     const double s = 2 * c / (b + std::sqrt(b * b - 4 * kSquare * c));

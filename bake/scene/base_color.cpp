@@ -26,13 +26,9 @@ auto mix(const SurfacePlace& place, const Values& values) {
 glm::vec3 look_up(const formats::Scene& scene, const SurfacePlace& place, const TextureOf& texture,
                   const TextureView* view) {
     const formats::Primitive& p = scene.primitives[place.primitive];
-    if (texture.image == formats::kNone || p.texcoord.empty()) {
-        return glm::vec3(1);
-    }
+    if (texture.image == formats::kNone || p.texcoord.empty()) return glm::vec3(1);
     const formats::Image8& image = scene.images[texture.image];
-    if (image.width == 0 || image.height == 0) {
-        return glm::vec3(1);
-    }
+    if (image.width == 0 || image.height == 0) return glm::vec3(1);
     return sample_over({image, texture.wrap_u, texture.wrap_v, texture.is_linear}, texture.image,
                        mix(place, [&](std::uint32_t i) { return p.texcoord[i]; }), view);
 }

@@ -100,9 +100,7 @@ double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriang
     const auto apex = std::find_if(other.point.begin(), other.point.end(),
                                    [&](std::uint32_t at) { return !is_corner(t, at); });
     const double area = 2 * glm::length(area_vector(body, t));
-    if (apex == other.point.end() || !(area > 0)) {
-        return 0;
-    }
+    if (apex == other.point.end() || !(area > 0)) return 0;
     const glm::dvec3 normal = 2.0 / area * area_vector(body, t);
     for (std::size_t k = 0; k < 3; ++k) {
         if (is_corner(other, point[k]) && is_corner(other, point[(k + 1) % 3])) {
@@ -136,9 +134,7 @@ class Places {
                 number = static_cast<std::uint32_t>(position.size());
                 position.push_back(at);
             }
-            if (position[number] == at) {
-                return number;
-            }
+            if (position[number] == at) return number;
         }
     }
 
@@ -151,9 +147,7 @@ void cut_into_shells(BodyShells& body) {
     const auto neighbours = find_neighbours(body);
     std::vector<bool> seen(body.triangle.size(), false);
     for (std::uint32_t seed = 0; seed < body.triangle.size(); ++seed) {
-        if (seen[seed]) {
-            continue;
-        }
+        if (seen[seed]) continue;
         BodyShell shell;
         shell.first = static_cast<std::uint32_t>(body.order.size());
         seen[seed] = true;
@@ -228,9 +222,7 @@ BodyShells weld_triangles(const Scene& scene, const std::vector<bool>& chosen) {
     std::vector<std::uint32_t> point;  // of each vertex of a primitive
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
         const Primitive& primitive = scene.primitives[p];
-        if (!chosen[primitive.material]) {
-            continue;
-        }
+        if (!chosen[primitive.material]) continue;
         point.assign(primitive.position.size(), Places::kNone);
         for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
             BodyTriangle t{{}, p, i};

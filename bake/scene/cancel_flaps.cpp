@@ -65,9 +65,7 @@ Flaps find_flaps(const formats::Scene& scene, std::uint32_t material) {
             cancelled += 2 * area_of(body, facets[begin].triangle);
         }
     }
-    if (cancelled > 0.5 * area) {
-        return flaps;
-    }
+    if (cancelled > 0.5 * area) return flaps;
     for (const std::uint32_t t : triangles) {
         flaps.first_index[body.triangle[t].primitive].push_back(body.triangle[t].first_index);
     }

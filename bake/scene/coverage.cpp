@@ -38,18 +38,14 @@ std::optional<Coverage> make_coverage(const formats::Scene& scene, std::uint32_t
                                       CoverageImages& images) {
     const formats::Primitive& p = scene.primitives[primitive];
     const Material& material = scene.materials[p.material];
-    if (!has_holes(material)) {
-        return std::nullopt;
-    }
+    if (!has_holes(material)) return std::nullopt;
     Coverage coverage;
     coverage.mode = material.alpha_mode;
     if (is_clear(material)) {
         coverage.clear = material.sheet->clear;
         coverage.eta = material.sheet->eta;
     }
-    if (coverage.mode == Material::AlphaMode::opaque) {
-        return coverage;
-    }
+    if (coverage.mode == Material::AlphaMode::opaque) return coverage;
     coverage.alpha = material.alpha;
     coverage.cutoff = material.alpha_cutoff;
     coverage.index = p.index;
@@ -85,9 +81,7 @@ float coverage_at(const Coverage& coverage, std::uint32_t triangle, float u, flo
                              weight[2] * coverage.texcoord[corner[2]];
         alpha *= sample_image({*coverage.image, coverage.wrap_u, coverage.wrap_v, true}, uv).a;
     }
-    if (coverage.mode == Material::AlphaMode::mask) {
-        return alpha < coverage.cutoff ? 0.0f : 1.0f;
-    }
+    if (coverage.mode == Material::AlphaMode::mask) return alpha < coverage.cutoff ? 0.0f : 1.0f;
     return alpha;
 }
 
@@ -99,9 +93,7 @@ bool meets_surface(const Coverage& coverage, const Passage& passage, float u, fl
         share *=
             1 - coverage.clear * formats::thin_glass_transmittance(passage.cosine, coverage.eta);
     }
-    if (share <= 0 || share >= 1) {
-        return share > 0;
-    }
+    if (share <= 0 || share >= 1) return share > 0;
     return static_cast<float>(hash_of(passage) >> 8) < share * 0x1p24f;
 }
 

@@ -9,9 +9,7 @@ namespace opaline::bake {
 
 formats::Medium even_medium(const formats::Scene& scene, std::uint32_t material) {
     formats::Medium medium = *scene.materials[material].medium;
-    if (!medium.variation) {
-        return medium;
-    }
+    if (!medium.variation) return medium;
     const MediumField field(scene, material);
     glm::dvec3 color(0);
     double density = 0, area = 0;
@@ -29,9 +27,7 @@ formats::Medium even_medium(const formats::Scene& scene, std::uint32_t material)
     }
     const auto g = static_cast<double>(medium.variation->g);
     medium.variation.reset();
-    if (!(area > 0)) {
-        return medium;
-    }
+    if (!(area > 0)) return medium;
     density /= area;
     const auto even_out = [&](float& sigma_s, float& sigma_a, double share) {
         const auto sigma_t = static_cast<double>(sigma_s) + static_cast<double>(sigma_a);
@@ -53,9 +49,7 @@ formats::Medium even_medium(const formats::Scene& scene, std::uint32_t material)
 std::optional<EvenedScene> even_media(const formats::Scene& scene) {
     std::optional<EvenedScene> evened;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
-        if (!scene.materials[m].medium || !scene.materials[m].medium->variation) {
-            continue;
-        }
+        if (!scene.materials[m].medium || !scene.materials[m].medium->variation) continue;
         if (!evened) {
             evened.emplace(EvenedScene{scene, {}});
         }

@@ -82,9 +82,7 @@ std::vector<formats::Diagnostic> flatten_slabs(formats::Scene& scene, const Cont
     constexpr double kWorthSaying = 0.02;
     std::vector<formats::Diagnostic> warnings;
     for (formats::Material& material : scene.materials) {
-        if (!material.medium || !(material.medium->thickness > 0)) {
-            continue;
-        }
+        if (!material.medium || !(material.medium->thickness > 0)) continue;
         const formats::Medium medium = *material.medium;
         const Flattened found = flatten(medium, context);
         material.medium.reset();

@@ -97,9 +97,7 @@ void build(HorizonTree& tree, std::uint32_t first, std::uint32_t count) {
     constexpr std::uint32_t kLeaf = 4;
     const auto self = static_cast<std::uint32_t>(tree.node.size());
     tree.node.push_back(enclose(tree.triangle, first, count));
-    if (count <= kLeaf) {
-        return;
-    }
+    if (count <= kLeaf) return;
     const std::uint32_t left = part(std::span(tree.triangle).subspan(first, count));
     build(tree, first, left);
     tree.node[self].right = static_cast<std::uint32_t>(tree.node.size());
@@ -123,9 +121,7 @@ double sine_of(const Triangle& triangle, glm::vec3 point, glm::dvec3 normal, dou
     }
     const double height =
         std::max({glm::dot(normal, to[0]), glm::dot(normal, to[1]), glm::dot(normal, to[2])});
-    if (!(height > flat)) {
-        return 0;
-    }
+    if (!(height > flat)) return 0;
     for (std::size_t k = 0; k < 3; ++k) {
         if (triangle[k] == point) {
             // A direction between the two is b u + c v, its height at most (b + c) times the larger

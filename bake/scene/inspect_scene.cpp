@@ -163,9 +163,7 @@ void inspect_surroundings(const Scene& scene, SceneFacts& facts) {
     Surroundings all{0, true};
     for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
         MaterialFacts& own = facts.material[m];
-        if (!(own.receivers > 0)) {
-            continue;
-        }
+        if (!(own.receivers > 0)) continue;
         const SentShare sent = find_sent_share(scene, m, own.brightest_vertex);
         own.brightest = sent.diffuse;
         own.textures = find_texture_facts(scene, m, sent.all);

@@ -45,9 +45,7 @@ glm::vec4 sample_textures(const formats::Scene& scene, const Variation& variatio
                           const VariationPyramids& pyramids, const NearestSurface::Place& place,
                           double area) {
     const formats::Primitive& p = scene.primitives[place.primitive];
-    if (p.texcoord.empty()) {
-        return glm::vec4(1);
-    }
+    if (p.texcoord.empty()) return glm::vec4(1);
     const std::uint32_t* const corner = &p.index[place.first_index];
     const glm::vec2 uv = (1 - place.u - place.v) * p.texcoord[corner[0]] +
                          place.u * p.texcoord[corner[1]] + place.v * p.texcoord[corner[2]];
@@ -68,9 +66,7 @@ glm::vec4 sample_textures(const formats::Scene& scene, const Variation& variatio
 
 bool is_grey(const formats::Image8& image) {
     for (std::size_t i = 0; i + 3 < image.rgba.size(); i += 4) {
-        if (image.rgba[i] != image.rgba[i + 1] || image.rgba[i] != image.rgba[i + 2]) {
-            return false;
-        }
+        if (image.rgba[i] != image.rgba[i + 1] || image.rgba[i] != image.rgba[i + 2]) return false;
     }
     return true;
 }
@@ -108,9 +104,7 @@ MediumField::MediumField(const formats::Scene& scene, std::uint32_t material)
 void MediumField::fill_grid(const formats::Scene& scene, std::uint32_t material) {
     constexpr float kCells = 96;
     const NearestSurface surface(scene, material);
-    if (surface.is_empty()) {
-        return;
-    }
+    if (surface.is_empty()) return;
     glm::vec3 low(std::numeric_limits<float>::max()), high(std::numeric_limits<float>::lowest());
     for (const formats::Primitive& p : scene.primitives) {
         for (std::size_t i = 0; p.material == material && i < p.index.size(); ++i) {
@@ -120,9 +114,7 @@ void MediumField::fill_grid(const formats::Scene& scene, std::uint32_t material)
     }
     const glm::vec3 size = high - low;
     const float longest = std::max({size.x, size.y, size.z});
-    if (!(longest > 0)) {
-        return;
-    }
+    if (!(longest > 0)) return;
     GridNodes nodes{low, longest / kCells, glm::uvec3(0)};
     low_ = low;
     per_cell_ = 1 / nodes.cell;
@@ -147,9 +139,7 @@ void MediumField::fill_grid(const formats::Scene& scene, std::uint32_t material)
 }
 
 glm::vec4 MediumField::grid(glm::vec3 position) const {
-    if (grid_.empty()) {
-        return glm::vec4(1);
-    }
+    if (grid_.empty()) return glm::vec4(1);
     const glm::vec3 most(nodes_ - 1);
     const glm::vec3 place = glm::clamp((position - low_) * per_cell_, glm::vec3(0), most);
     const glm::ivec3 cell = glm::min(glm::ivec3(place), glm::max(nodes_ - 2, glm::ivec3(0)));
@@ -170,9 +160,7 @@ glm::vec4 MediumField::grid(glm::vec3 position) const {
 }
 
 float MediumField::mean_density(glm::vec3 from, glm::vec3 to) const {
-    if (!has_density_ || grid_.empty()) {
-        return 1;
-    }
+    if (!has_density_ || grid_.empty()) return 1;
     constexpr float kStepsPerCell = 2, kMostSteps = 512;
     const float steps = std::clamp(std::ceil(kStepsPerCell * per_cell_ * glm::distance(from, to)),
                                    1.0f, kMostSteps);

@@ -97,9 +97,7 @@ struct Propagation {
     }
 
     void take(std::size_t to, glm::uvec3 at, std::size_t from) {
-        if (places[from].primitive == formats::kNone) {
-            return;
-        }
+        if (places[from].primitive == formats::kNone) return;
         const float distance = glm::distance(nodes.position(at.x, at.y, at.z), points[from]);
         if (places[to].primitive == formats::kNone || distance < places[to].distance) {
             places[to] = places[from];
@@ -120,9 +118,7 @@ struct NearestSurface::Search {
 NearestSurface::NearestSurface(const formats::Scene& scene, std::uint32_t material) {
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
         const formats::Primitive& primitive = scene.primitives[p];
-        if (primitive.material != material) {
-            continue;
-        }
+        if (primitive.material != material) continue;
         for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
             const auto corner = [&](std::uint32_t k) {
                 return primitive.position[primitive.index[i + k]];

@@ -93,9 +93,7 @@ void lower_to_gap(const HorizonTree& surface, const Triangle& triangle, int dept
         return;
     }
     const double reach = least + radius, distance = distance_within(surface, middle, reach);
-    if (!(distance < reach)) {
-        return;
-    }
+    if (!(distance < reach)) return;
     if (distance - radius >= 0.5 * distance) {
         least = distance - radius;
     } else if (depth == kDeepest || !(radius > 0)) {

@@ -58,9 +58,7 @@ std::vector<std::uint32_t> shells_within(const BodyShells& body, const BodyShell
     std::vector<Corners> triangles;
     for (std::uint32_t s = 0; s < body.shell.size(); ++s) {
         const BodyShell& inner = body.shell[s];
-        if (outer.volume > 0 && (inner.volume > 0 || !has_volume(inner))) {
-            continue;
-        }
+        if (outer.volume > 0 && (inner.volume > 0 || !has_volume(inner))) continue;
         if (&inner == &outer || !glm::all(glm::greaterThanEqual(inner.low, outer.low)) ||
             !glm::all(glm::lessThanEqual(inner.high, outer.high))) {
             continue;
@@ -99,9 +97,7 @@ void turn_shells_outward(BodyShells& body) {
     });
     for (const std::uint32_t s : by_size) {
         const BodyShell& shell = body.shell[s];
-        if (shell.inside || !has_volume(shell)) {
-            continue;
-        }
+        if (shell.inside || !has_volume(shell)) continue;
         // Most bodies are one shell, or separate shells that face outward.
         if (body.shell.size() > 1) {
             for (const std::uint32_t inner : shells_within(body, shell, work_left)) {
@@ -268,17 +264,13 @@ OrientedBodies orient_bodies(const Scene& scene) {
         changed(scene, result).primitives[welded.primitive].position = std::move(welded.position);
     }
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
-        if (!scene.materials[m].medium) {
-            continue;
-        }
+        if (!scene.materials[m].medium) continue;
         const Flaps flaps = find_flaps(latest(scene, result), m);
         if (flaps.pairs > 0) {
             remove_flaps(flaps, changed(scene, result));
         }
         BodyShells body = make_body_shells(latest(scene, result), m);
-        if (body.triangle.empty()) {
-            continue;
-        }
+        if (body.triangle.empty()) continue;
         turn_shells_outward(body);
         BodySurface surface{m, 0, body.open_edges, flaps.pairs};
         surface.turned = apply_turns(body, scene, result);

@@ -21,9 +21,7 @@ float spot_factor(const Light& light, float cosine) {
 }
 
 float range_factor(const Light& light, float distance) {
-    if (!(light.range > 0)) {
-        return 1;
-    }
+    if (!(light.range > 0)) return 1;
     const float ratio = distance / light.range, square = ratio * ratio;
     return std::max(0.0f, 1 - square * square);
 }
@@ -52,9 +50,7 @@ ArrivingLight light_at(const Light& light, glm::vec3 position) {
 
 double flux_per_intensity(const Light& light) {
     constexpr double kPi = std::numbers::pi;
-    if (light.type == Light::Type::point) {
-        return 4 * kPi;
-    }
+    if (light.type == Light::Type::point) return 4 * kPi;
     const double outer = std::cos(static_cast<double>(light.outer_cone));
     const double inner = std::cos(static_cast<double>(light.inner_cone));
     const double edge = std::max(static_cast<double>(kLeastEdge), inner - outer);

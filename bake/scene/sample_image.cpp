@@ -57,9 +57,7 @@ glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv) {
         const std::uint32_t row =
             wrap(static_cast<std::int64_t>(y0) + dy, image.height, lookup.wrap_v);
         const std::uint8_t* code = &image.rgba[4 * (std::size_t{row} * image.width + column)];
-        if (lookup.is_linear) {
-            return glm::vec4(code[0], code[1], code[2], code[3]) / 255.0f;
-        }
+        if (lookup.is_linear) return glm::vec4(code[0], code[1], code[2], code[3]) / 255.0f;
         const auto& linear = linear_codes();
         return glm::vec4(linear[code[0]], linear[code[1]], linear[code[2]],
                          static_cast<float>(code[3]) / 255.0f);

@@ -44,9 +44,7 @@ double densest_texels(const formats::Scene& scene, std::uint32_t material,
                       const formats::Image8& image) {
     double most = 0;
     for (const formats::Primitive& p : scene.primitives) {
-        if (p.material != material || p.texcoord.empty()) {
-            continue;
-        }
+        if (p.material != material || p.texcoord.empty()) continue;
         for (std::uint32_t i = 0; i + 2 < p.index.size(); i += 3) {
             const UvMoments metre = moments_of_area(uv_gradient(p, i), 1);
             most = std::max(most, texture_taps(metre, {image.width, image.height}, 1).major);
@@ -60,9 +58,7 @@ double densest_texels(const formats::Scene& scene, std::uint32_t material,
 ColorRange find_color_range(const formats::Scene& scene, std::uint32_t material) {
     Range vertex;
     for (const formats::Primitive& primitive : scene.primitives) {
-        if (primitive.material != material) {
-            continue;
-        }
+        if (primitive.material != material) continue;
         if (primitive.color.empty()) {
             vertex.add({1, 1, 1});
         }

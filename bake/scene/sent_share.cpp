@@ -67,9 +67,7 @@ SentShare find_sent_share(const formats::Scene& scene, std::uint32_t material,
 
 bool has_grey_numbers(const formats::Scene& scene, std::uint32_t material) {
     const formats::Material& m = scene.materials[material];
-    if (m.sheet) {
-        return is_grey(m.sheet->reflect) && is_grey(m.sheet->transmit);
-    }
+    if (m.sheet) return is_grey(m.sheet->reflect) && is_grey(m.sheet->transmit);
     return m.medium && is_grey(m.medium->sigma_s) && is_grey(m.medium->sigma_a) &&
            (!m.medium->variation || is_grey(scene, *m.medium->variation));
 }

@@ -6,18 +6,14 @@
 namespace opaline::bake {
 
 glm::dmat3x2 uv_gradient(const formats::Primitive& primitive, std::uint32_t first_index) {
-    if (primitive.texcoord.empty()) {
-        return glm::dmat3x2(0.0);
-    }
+    if (primitive.texcoord.empty()) return glm::dmat3x2(0.0);
     const std::uint32_t* const i = &primitive.index[first_index];
     const glm::dvec3 origin(primitive.position[i[0]]);
     const glm::dvec3 s = glm::dvec3(primitive.position[i[1]]) - origin;
     const glm::dvec3 t = glm::dvec3(primitive.position[i[2]]) - origin;
     const glm::dvec3 n = glm::cross(s, t);
     const double square = glm::dot(n, n);
-    if (!(square > 1e-24 * glm::dot(s, s) * glm::dot(t, t))) {
-        return glm::dmat3x2(0.0);
-    }
+    if (!(square > 1e-24 * glm::dot(s, s) * glm::dot(t, t))) return glm::dmat3x2(0.0);
     // Gradients of the weights of the second and third corner.
     const glm::dvec3 along_s = glm::cross(t, n) / square, along_t = glm::cross(n, s) / square;
     const glm::dvec2 uv(primitive.texcoord[i[0]]);
@@ -45,9 +41,7 @@ UvMoments moments_of_cone(const glm::dmat3x2& duv_dP, const glm::dvec3& directio
     const double cosine = glm::dot(direction, normal);
     const glm::dvec3 across = glm::cross(direction, normal);
     const double sine = glm::length(across);
-    if (!(sine > 1e-6)) {
-        return moments_of_area(duv_dP, width * width);
-    }
+    if (!(sine > 1e-6)) return moments_of_area(duv_dP, width * width);
     // Across the plane of incidence as wide as the cone, along it 1 / cosine longer.
     const glm::dvec3 along = (direction - cosine * normal) / sine;
     return moments_of_edges(duv_dP, width / sine * across,

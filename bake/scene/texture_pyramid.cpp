@@ -68,15 +68,9 @@ Level halved(std::uint32_t width, std::uint32_t height, const Texel& texel) {
 float folded(float u, TextureWrap mode) {
     mode = formats::edge_of(mode);
     constexpr float kLargest = 1e6f;  // as of sample_image
-    if (!(std::abs(u) < kLargest)) {
-        return 0;
-    }
-    if (mode == TextureWrap::clamp) {
-        return std::clamp(u, 0.0f, 1.0f);
-    }
-    if (mode == TextureWrap::repeat) {
-        return u - std::floor(u);
-    }
+    if (!(std::abs(u) < kLargest)) return 0;
+    if (mode == TextureWrap::clamp) return std::clamp(u, 0.0f, 1.0f);
+    if (mode == TextureWrap::repeat) return u - std::floor(u);
     const float twice = u - 2 * std::floor(0.5f * u);
     return twice > 1 ? 2 - twice : twice;
 }
@@ -121,9 +115,7 @@ glm::vec4 sample_any_level(const ImageLookup& lookup, const TexturePyramid& pyra
 bool is_even(const formats::Image8& image) {
     const std::span<const std::uint8_t> all = image.rgba;
     for (std::size_t i = 4; i < all.size(); ++i) {
-        if (all[i] != all[i - 4]) {
-            return false;
-        }
+        if (all[i] != all[i - 4]) return false;
     }
     return true;
 }
@@ -148,14 +140,10 @@ TexturePyramid make_pyramid(const formats::Image8& image, bool is_linear) {
 
 glm::vec4 sample_footprint(const ImageLookup& lookup, const TexturePyramid& pyramid, glm::vec2 uv,
                            const UvMoments& footprint) {
-    if (pyramid.coarser.empty()) {
-        return sample_image(lookup, uv);
-    }
+    if (pyramid.coarser.empty()) return sample_image(lookup, uv);
     const TextureTaps taps =
         texture_taps(footprint, {lookup.image.width, lookup.image.height}, kMostTaps);
-    if (!(taps.major > 1)) {
-        return sample_image(lookup, uv);
-    }
+    if (!(taps.major > 1)) return sample_image(lookup, uv);
     const auto most = static_cast<float>(pyramid.coarser.size());
     const float level = std::min(static_cast<float>(taps.level), most);
     const auto below = static_cast<std::size_t>(level);
@@ -173,9 +161,7 @@ glm::vec4 sample_footprint(const ImageLookup& lookup, const TexturePyramid& pyra
 
 glm::vec4 sample_over(const ImageLookup& lookup, std::uint32_t number, glm::vec2 uv,
                       const TextureView* view) {
-    if (view == nullptr) {
-        return sample_image(lookup, uv);
-    }
+    if (view == nullptr) return sample_image(lookup, uv);
     const auto& all = lookup.is_linear ? view->pyramids.data : view->pyramids.color;
     return number < all.size() ? sample_footprint(lookup, all[number], uv, view->moments)
                                : sample_image(lookup, uv);
@@ -193,18 +179,14 @@ ScenePyramids make_scene_pyramids(const formats::Scene& scene,
     pyramids.color.resize(scene.images.size());
     pyramids.data.resize(scene.images.size());
     const auto add = [&](std::uint32_t image, bool is_linear) {
-        if (image == formats::kNone || is_even(scene.images[image])) {
-            return;
-        }
+        if (image == formats::kNone || is_even(scene.images[image])) return;
         TexturePyramid& to = (is_linear ? pyramids.data : pyramids.color)[image];
         if (to.coarser.empty()) {
             to = make_pyramid(scene.images[image], is_linear);
         }
     };
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        if (!of_material.empty() && of_material[m] == 0) {
-            continue;
-        }
+        if (!of_material.empty() && of_material[m] == 0) continue;
         const formats::Material& material = scene.materials[m];
         add(material.base_color_image, false);
         add(material.emission_image, false);

@@ -12,9 +12,7 @@ TextureTaps texture_taps(const UvMoments& moments, glm::dvec2 resolution, int mo
     const double half = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
     const double major = 0.5 * (a + c) + half;
     TextureTaps taps;
-    if (!(major > 0) || !std::isfinite(major)) {
-        return taps;
-    }
+    if (!(major > 0) || !std::isfinite(major)) return taps;
     taps.major = std::sqrt(major);
     taps.minor = std::sqrt(std::max((a * c - b * b) / major, 0.0));
     const double wanted = std::ceil(taps.major / std::max(taps.minor, 1.0));

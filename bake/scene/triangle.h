@@ -33,9 +33,7 @@ inline double distance_to_triangle(glm::dvec3 a, glm::dvec3 b, glm::dvec3 c) {
     const bool is_over = glm::dot(glm::cross(b - a, n), a) >= 0 &&
                          glm::dot(glm::cross(c - b, n), b) >= 0 &&
                          glm::dot(glm::cross(a - c, n), c) >= 0;
-    if (is_over) {
-        return std::abs(glm::dot(n, a)) / glm::length(n);
-    }
+    if (is_over) return std::abs(glm::dot(n, a)) / glm::length(n);
     return std::min(
         {distance_to_segment(a, b), distance_to_segment(b, c), distance_to_segment(c, a)});
 }

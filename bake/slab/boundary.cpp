@@ -17,9 +17,7 @@ double lost(double x) {
 }
 std::complex<double> lost(std::complex<double> x) {
     constexpr double kSeriesBelow = 1e-2;
-    if (std::abs(x) >= kSeriesBelow) {
-        return 1.0 - std::exp(-x);
-    }
+    if (std::abs(x) >= kSeriesBelow) return 1.0 - std::exp(-x);
     std::complex<double> sum = 0, power = -1;  // -(-x)^n / n!
     for (int n = 1; n < 8; ++n) {
         power *= -x / static_cast<double>(n);

@@ -19,9 +19,7 @@ using Eigen::VectorXd;
 /// y - 1 + e^-y for y >= 0: y^2 / 2 - y^3 / 6 + ...
 double twice_turned(double y) {
     constexpr double kSeriesBelow = 0.2;
-    if (y >= kSeriesBelow) {
-        return y + std::expm1(-y);
-    }
+    if (y >= kSeriesBelow) return y + std::expm1(-y);
     double sum = 0, power = -y;
     for (int n = 2; n < 12; ++n) {
         power *= -y / n;
@@ -95,9 +93,7 @@ LeastSquares minimise_squares(
                 damping *= 10;
             }
         }
-        if (before - after <= kEnough * before) {
-            break;
-        }
+        if (before - after <= kEnough * before) break;
     }
     return {at, std::sqrt(value.squaredNorm() / static_cast<double>(value.size())),
             value.cwiseAbs().maxCoeff()};

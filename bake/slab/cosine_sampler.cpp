@@ -36,9 +36,7 @@ CosineSampler CosineSampler::tabulated(std::span<const double> cosine,
 }
 
 double CosineSampler::sample(double uniform) const {
-    if (!cosine_.empty()) {
-        return sample_table(uniform);
-    }
+    if (!cosine_.empty()) return sample_table(uniform);
     const double even = 2 * uniform - 1;
     constexpr double kNearlyIsotropic = 1e-4;  // the closed form cancels there
     if (std::abs(g_) < kNearlyIsotropic) {

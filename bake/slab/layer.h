@@ -81,9 +81,7 @@ void double_up(const PhaseKernels& kernels, const Streams& streams, Scalar albed
         if (left <= halvings) {
             take(left, std::as_const(layer));
         }
-        if (left == 0) {
-            return;
-        }
+        if (left == 0) return;
         layer = double_layer(layer, flux);
     }
 }

@@ -17,9 +17,7 @@ double phi(double d) {
 /// 1 - (1 + x) e^-x, which is x^2 / 2 - x^3 / 3 + ... and would cancel.
 double second_order(double x) {
     constexpr double kSeriesBelow = 0.3;
-    if (x >= kSeriesBelow) {
-        return 1 - (1 + x) * std::exp(-x);
-    }
+    if (x >= kSeriesBelow) return 1 - (1 + x) * std::exp(-x);
     double sum = 0, power = x;  // x^n / n!, with its sign
     for (int n = 2; n < 14; ++n) {
         power *= -x / n;
@@ -67,9 +65,7 @@ double transmitted_twice(double depth, double light, double view) {
 double spread_profile(double a, double view) {
     const double mu = std::max(view, kGrazing);
     constexpr double kThin = 1e-15;  // of view: then 1 - e^(-a / mu) is a / mu
-    if (a < kThin * mu) {
-        return 1 / (2 * mu);
-    }
+    if (a < kThin * mu) return 1 / (2 * mu);
     // 1 - 2 E_3(a) = 1 - e^-a + a e^-a - a^2 E_1(a)
     const double taken = -std::expm1(-a) + a * std::exp(-a) + a * a * std::expint(-a);
     return -std::expm1(-a / mu) / taken;

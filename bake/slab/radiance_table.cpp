@@ -26,9 +26,7 @@ TablePlace place_cosine(double cosine, std::size_t count) {
 /// Shrinks two shares to a sum of `most` at most; returns what they leave of it.
 double leave_rest(double& first, double& second, double most) {
     const double sum = first + second;
-    if (sum <= most) {
-        return most - sum;
-    }
+    if (sum <= most) return most - sum;
     const double scale = std::max(most, 0.0) / sum;
     first *= scale;
     second *= scale;

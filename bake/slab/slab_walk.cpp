@@ -95,9 +95,7 @@ void leave(SlabSide& side, const SlabWalkRequest& request, const SlabVector& dir
            std::uint32_t order, double weight) {
     side.all.add(weight);
     side.order[std::min(order, request.orders - 1)].add(weight);
-    if (side.histogram.empty() || order < request.histogram_from) {
-        return;
-    }
+    if (side.histogram.empty() || order < request.histogram_from) return;
     const unsigned row = bin_of(std::abs(direction.z), request.cosine_bins);
     const double azimuth = std::abs(std::atan2(direction.y, direction.x)) / pi;
     side.histogram[row * std::size_t{request.azimuth_bins} + bin_of(azimuth, request.azimuth_bins)]
@@ -145,9 +143,7 @@ bool fly(SlabPhoton& photon, const SlabWalkRequest& request, std::uint64_t key,
             return true;
         }
         photon.depth += flight * photon.direction.z;
-        if (photon.depth > 0 && photon.depth < request.optical_depth) {
-            return true;
-        }
+        if (photon.depth > 0 && photon.depth < request.optical_depth) return true;
         if (static_cast<double>(uniform[2]) < pass) {
             photon.direction = refract(photon.direction, 1 / request.eta);
             return false;

@@ -18,9 +18,7 @@ namespace {
 template <class Scalar>
 StreamFluxes<Scalar> sum_fluxes(const Layer<Scalar>& layer, const Eigen::VectorXd& flux,
                                 const SlabBoundary& boundary) {
-    if (boundary.eta != 1) {
-        return sum_bounded_fluxes(layer, flux, boundary);
-    }
+    if (boundary.eta != 1) return sum_bounded_fluxes(layer, flux, boundary);
     return {layer.reflect * flux.cast<Scalar>(),
             layer.transmit * flux.cast<Scalar>() + layer.straight()};
 }
@@ -62,9 +60,7 @@ std::vector<SlabSolution> solve_slab(const SlabMedium& medium, const SlabRequest
             solution.optical_depth = std::ldexp(request.optical_depth, -static_cast<int>(halvings));
             solution.total = at_cosines(sum_fluxes(layer, flux, boundary), streams, boundary, true);
         });
-    if (request.orders == 0) {
-        return solutions;
-    }
+    if (request.orders == 0) return solutions;
     // What n scatterings leave is the coefficient of albedo^n.
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(streams.cosine.size());
     std::vector<std::vector<StreamFluxes<double>>> orders(

@@ -66,9 +66,7 @@ PhaseKernels make_phase_kernels(const SlabMedium& medium, const Streams& streams
     const auto count = streams.cosine.size();
     kernels.forward = kernels.backward = Eigen::MatrixXd::Zero(count, entering);
     const int degrees = kernels.peak > 0 ? resolved : std::min(moments, resolved);
-    if (m >= degrees) {
-        return kernels;
-    }
+    if (m >= degrees) return kernels;
     const Eigen::MatrixXd legendre = associated_legendre(streams.cosine, m, degrees);
     Eigen::VectorXd even = Eigen::VectorXd::Zero(degrees - m), odd = even;
     for (int l = m; l < degrees; ++l) {

@@ -45,9 +45,7 @@ void gather_openness(const RayScene& rays, const DirectionSet& directions,
                 lanes[i] = cosine[i] > 0.0f && ray > 0.0f ? -1 : 0;
                 any |= lanes[i];
             }
-            if (any == 0) {
-                continue;
-            }
+            if (any == 0) continue;
             packet.dir_x.fill(w.x);
             packet.dir_y.fill(w.y);
             packet.dir_z.fill(w.z);

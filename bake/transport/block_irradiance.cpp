@@ -42,9 +42,7 @@ std::uint64_t trace_block(const RayScene& rays, const DirectionBlock& block, glm
     }
     RayPacket::Lane cosine;
     LaneMask lanes;
-    if (!integrate_cosine(block, normal, cosine, lanes)) {
-        return 0;
-    }
+    if (!integrate_cosine(block, normal, cosine, lanes)) return 0;
     if (!transmittance.empty()) {
         weight_by_boundary(block, normal, transmittance, cosine);
     }
@@ -66,9 +64,7 @@ void fill_block(const DirectionBlock& block, glm::vec3 normal, std::span<const f
                 std::span<float> transport) {
     RayPacket::Lane cosine;
     LaneMask lanes;
-    if (!integrate_cosine(block, normal, cosine, lanes)) {
-        return;
-    }
+    if (!integrate_cosine(block, normal, cosine, lanes)) return;
     if (!transmittance.empty()) {
         weight_by_boundary(block, normal, transmittance, cosine);
     }

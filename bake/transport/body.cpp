@@ -37,9 +37,7 @@ InwardPath follow(const RayScene& rays, const BodyPoint& point, glm::vec3 direct
     std::int32_t shells = 0;
     for (int i = 0; i < kMostCrossings; ++i) {
         const PacketHits hits = rays.closest(first, packet);
-        if (hits.hit[0] == 0) {
-            break;
-        }
+        if (hits.hit[0] == 0) break;
         packet.tnear[0] = step_behind(hits, 0);
         if (hits.material[0] == point.material && hits.cosine[0] != 0.0f) {
             shells += hits.cosine[0] > 0 ? -1 : 1;
@@ -71,9 +69,7 @@ InwardPath follow(const RayScene& rays, const BodyPoint& point, glm::vec3 direct
 
 InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float limit) {
     InwardPath path;
-    if (point.normal == glm::vec3(0)) {
-        return path;
-    }
+    if (point.normal == glm::vec3(0)) return path;
     path = follow(rays, point, -point.normal, limit);
     // A ray that aims exactly at a vertex on the far side, as in symmetric meshes, may slip between
     // its triangles. A slightly tilted ray hits them, or confirms a hole.
@@ -92,9 +88,7 @@ InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float
 std::int32_t shells_at(const InwardPath& path, float depth) {
     std::int32_t shells = 0;
     for (const InwardPath::Step& step : path.steps) {
-        if (step.depth > depth) {
-            break;
-        }
+        if (step.depth > depth) break;
         shells = step.shells;
     }
     return shells;
@@ -128,9 +122,7 @@ PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMas
         const PacketHits hits = rays.closest(lanes, packet);
         std::int32_t any = 0;
         for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
-            if (lanes[lane] == 0) {
-                continue;
-            }
+            if (lanes[lane] == 0) continue;
             ++counts.rays;
             if (hits.hit[lane] == 0 || hits.material[lane] != material) {
                 counts.missing += hits.hit[lane] == 0 ? 1u : 0u;
@@ -151,9 +143,7 @@ PacketEntries find_entries(const RayScene& rays, std::uint32_t material, LaneMas
             }
             any |= lanes[lane];
         }
-        if (any == 0) {
-            break;
-        }
+        if (any == 0) break;
     }
     packet.tfar.fill(kInfinity);
     rays.occluded(beyond, packet);

@@ -31,9 +31,7 @@ class LowerEnvelope {
             for (;; --last) {
                 const std::size_t j = middle_[last];
                 crossing = (height(i) - height(j)) / (2 * static_cast<float>(i - j));
-                if (crossing > begin_[last]) {
-                    break;
-                }
+                if (crossing > begin_[last]) break;
             }
             middle_[++last] = i;
             begin_[last] = crossing;
@@ -61,9 +59,7 @@ ClearanceGrid::ClearanceGrid(const formats::Scene& scene, glm::vec3 centre, glm:
                              float cell, std::uint32_t most) {
     const float longest = 2 * std::max({half_size.x, half_size.y, half_size.z});
     cell_ = std::max(cell, longest / static_cast<float>(most - 2));
-    if (!(cell_ > 0) || longest < 8 * cell_) {
-        return;
-    }
+    if (!(cell_ > 0) || longest < 8 * cell_) return;
     per_cell_ = 1 / cell_;
     step_ = cell_ / kStepsPerCell;
     // A margin of half a cell keeps rounded positions inside.
@@ -105,9 +101,7 @@ bool ClearanceGrid::mark_triangles(const formats::Scene& scene) {
             const glm::vec3 across = glm::abs(n);
             const glm::uvec3 extent = last - first + 1u;
             visits += std::uint64_t{extent.x} * extent.y * extent.z;
-            if (visits > kMostVisits) {
-                return false;
-            }
+            if (visits > kMostVisits) return false;
             const float reach = (0.5f + kRounding) * (across.x + across.y + across.z);
             for (std::uint32_t z = first.z; z <= last.z; ++z) {
                 for (std::uint32_t y = first.y; y <= last.y; ++y) {

@@ -38,9 +38,7 @@ struct Builder {
     void build(std::uint32_t first, std::uint32_t count) {
         const std::size_t self = nodes.size();
         nodes.push_back(bound(first, count));
-        if (count <= kSamplesPerLeaf) {
-            return;
-        }
+        if (count <= kSamplesPerLeaf) return;
         const std::uint32_t half = first_child_count(count);
         build(first, half);
         nodes[self].right = static_cast<std::uint32_t>(nodes.size());
@@ -116,9 +114,7 @@ ClusterTree build_cluster_tree(std::span<const SurfaceSample> samples, SampleTra
                                std::uint32_t cubemap_size, std::uint32_t kept,
                                const Context& context, std::uint32_t kept_of_light) {
     ClusterTree tree;
-    if (samples.empty()) {
-        return tree;
-    }
+    if (samples.empty()) return tree;
     Builder{samples, transport.mean, tree.nodes}.build(0,
                                                        static_cast<std::uint32_t>(samples.size()));
     copy_samples(samples, transport.norm, tree);

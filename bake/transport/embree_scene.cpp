@@ -33,9 +33,7 @@ void pass_holes(const RTCFilterFunctionNArguments* arguments) {
     const PrimitiveHoles& holes = *static_cast<const PrimitiveHoles*>(arguments->geometryUserPtr);
     const unsigned n = arguments->N;
     for (unsigned i = 0; i < n; ++i) {
-        if (arguments->valid[i] == 0) {
-            continue;
-        }
+        if (arguments->valid[i] == 0) continue;
         Passage passage{{RTCRayN_org_x(arguments->ray, n, i), RTCRayN_org_y(arguments->ray, n, i),
                          RTCRayN_org_z(arguments->ray, n, i)},
                         {RTCRayN_dir_x(arguments->ray, n, i), RTCRayN_dir_y(arguments->ray, n, i),
@@ -123,9 +121,7 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
                                    "free some memory, or use a smaller scene");
     };
     built.device_ = rtcNewDevice((std::string("isa=") + kInstructionSet).c_str());
-    if (built.device_ == nullptr) {
-        return failed("the Embree device cannot be made");
-    }
+    if (built.device_ == nullptr) return failed("the Embree device cannot be made");
     built.scene_ = rtcNewScene(built.device_);
     rtcSetSceneFlags(built.scene_,
                      filters ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
@@ -141,9 +137,7 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
             built.high_ = glm::max(built.high_, v);
             farthest = glm::max(farthest, glm::abs(v));
         }
-        if (p.index.empty()) {
-            continue;
-        }
+        if (p.index.empty()) continue;
         PrimitiveHoles* holes = nullptr;
         if (auto coverage = make_coverage(scene, number, images)) {
             built.has_chances_ = built.has_chances_ || coverage->has_chances();

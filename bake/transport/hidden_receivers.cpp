@@ -64,9 +64,7 @@ std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
 }  // namespace
 
 bool is_hidden(const RayScene& rays, const Receiver& receiver) {
-    if (rays.is_empty() || receiver.normal == glm::vec3(0)) {
-        return false;
-    }
+    if (rays.is_empty() || receiver.normal == glm::vec3(0)) return false;
     LaneMask all;
     all.fill(-1);
     const LaneMask back = rays.meets_back_face(all, probe_packet(receiver));
@@ -76,9 +74,7 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver) {
 std::vector<Receiver> replace_hidden_receivers(const RayScene& rays, const formats::Scene& scene,
                                                std::vector<Receiver> receivers,
                                                const Context& context) {
-    if (rays.is_empty()) {
-        return receivers;
-    }
+    if (rays.is_empty()) return receivers;
     std::vector<bool> hidden;
     for_each_block_in_order(
         receivers.size(), 1024, context,

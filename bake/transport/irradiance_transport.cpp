@@ -59,9 +59,7 @@ struct Group {
             open |= asked && passed;
             blocked |= asked && !passed;
         }
-        if (open && blocked) {
-            return Seen::mixed;
-        }
+        if (open && blocked) return Seen::mixed;
         return open ? Seen::open : blocked ? Seen::blocked : Seen::nothing;
     }
 
@@ -191,9 +189,7 @@ std::uint64_t gather_banded_irradiance(const RayScene& rays, const DirectionSet&
     const bool is_open = rays.is_empty();
     std::uint64_t traced = 0;
     for (const DirectionBlock& block : directions.blocks) {
-        if (is_below(block, n)) {
-            continue;
-        }
+        if (is_below(block, n)) continue;
         LaneMask lanes;
         RayPacket::Lane cosine;  // integrated over each cell
         for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {

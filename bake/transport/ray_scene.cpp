@@ -33,9 +33,7 @@ RTCRayHit16 intersect(RTCScene triangles, const LaneMask& lanes, const RayPacket
 
 formats::Result<RayScene> RayScene::build(const formats::Scene& scene, unsigned threads) {
     auto triangles = EmbreeScene::build(scene, threads);
-    if (!triangles) {
-        return std::move(triangles).error();
-    }
+    if (!triangles) return std::move(triangles).error();
     return RayScene(std::move(*triangles));
 }
 
@@ -51,9 +49,7 @@ PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) con
     const RTCRayHit16 ray = intersect(triangles_.handle(), lanes, packet);
     PacketHits hits{};
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
-        if (lanes[i] == 0 || ray.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) {
-            continue;
-        }
+        if (lanes[i] == 0 || ray.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
         const float x = ray.hit.Ng_x[i], y = ray.hit.Ng_y[i], z = ray.hit.Ng_z[i];
         const float along = x * packet.dir_x[i] + y * packet.dir_y[i] + z * packet.dir_z[i];
         const float length = std::sqrt(x * x + y * y + z * z);

@@ -30,9 +30,7 @@ std::vector<float> tabulate_transmittance(double eta) {
 
 // int Ft(c) 2 c dc, by trapezoids.
 float mean_transmittance(std::span<const float> table) {
-    if (table.empty()) {
-        return 1;
-    }
+    if (table.empty()) return 1;
     const auto steps = static_cast<double>(table.size() - 1);
     double sum = static_cast<double>(table.back());
     for (std::size_t i = 1; i + 1 < table.size(); ++i) {

@@ -76,25 +76,19 @@ Receiver leave_touching_triangles(const EmbreeScene& triangles, const formats::S
                                   glm::vec3 position, Receiver receiver) {
     // The clearance of the vertex's own triangles bounds the rounding of its coordinates, too.
     Search search{triangles, scene, position, glm::distance(receiver.origin, position), {}};
-    if (triangles.triangles() == 0 || !(search.radius > 0)) {
-        return receiver;
-    }
+    if (triangles.triangles() == 0 || !(search.radius > 0)) return receiver;
     RTCPointQuery query{position.x, position.y, position.z, 0, search.radius};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(triangles.handle(), &query, &context, visit, &search);
-    if (!search.has_touching || search.is_full) {
-        return receiver;
-    }
+    if (!search.has_touching || search.is_full) return receiver;
     // Embree's order depends on its hierarchy; that of the sums must not.
     const auto found = std::span(search.found).first(search.count);
     std::ranges::sort(found, {}, &Found::place);
     std::array<glm::vec3, kMostTriangles> normals;
     std::ranges::transform(found, normals.begin(), &Found::normal);
     const Clearance clearance = clearest_direction(std::span(normals).first(search.count));
-    if (!(clearance.cosine > kLeastClearance)) {
-        return receiver;
-    }
+    if (!(clearance.cosine > kLeastClearance)) return receiver;
     const float extent = std::ranges::max(found, {}, &Found::extent).extent;
     receiver.origin =
         position + (clearance_bound(position, extent) / clearance.cosine) * clearance.direction;

@@ -95,9 +95,7 @@ void append(std::string& bytes, const T* values, std::size_t count) {
 // False at the end.
 template <class T>
 bool take(std::string_view& bytes, T* values, std::size_t count) {
-    if (bytes.size() / sizeof(T) < count) {
-        return false;
-    }
+    if (bytes.size() / sizeof(T) < count) return false;
     if (count > 0) {  // of no values, the pointer may be null
         std::memcpy(static_cast<void*>(values), bytes.data(), count * sizeof(T));
     }
@@ -129,9 +127,7 @@ formats::Result<std::vector<TestLight>> integrate_test_lights(unsigned threads) 
     std::vector<TestLight> lights;
     for (const char* name : kPublishedLights) {
         formats::Result<formats::Environment> environment = make_environment(name);
-        if (!environment) {
-            return std::move(environment).error();
-        }
+        if (!environment) return std::move(environment).error();
         // Two to three pixels per texel suffice for these smooth maps.
         std::vector<formats::DistantDisc> discs = std::move(environment->discs);
         if (!environment->pixel.empty()) {
@@ -154,9 +150,7 @@ formats::Result<std::vector<TestLight>> make_test_lights(std::uint32_t cubemap_s
     }
     if (lights.empty()) {
         auto integrated = integrate_test_lights(threads);
-        if (!integrated) {
-            return integrated;
-        }
+        if (!integrated) return integrated;
         lights = std::move(*integrated);
         if (!cache.empty()) {
             write_test_lights(cache, lights);
@@ -222,9 +216,7 @@ std::vector<TestLight> read_test_lights(const std::filesystem::path& file) {
 
 void write_test_lights(const std::filesystem::path& file, const std::vector<TestLight>& lights) {
     const std::uint64_t program = program_checksum();
-    if (program == 0) {
-        return;
-    }
+    if (program == 0) return;
     std::string bytes;
     append(bytes, &program, 1);
     for (const TestLight& light : lights) {

@@ -21,9 +21,7 @@ glm::vec3 direction_of(const RayPacket& packet, std::uint32_t lane) {
 
 // Traces the lanes above the horizon and keeps those that see the sky.
 std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask& lanes) {
-    if (rays.is_empty()) {
-        return 0;
-    }
+    if (rays.is_empty()) return 0;
     packet.tfar.fill(std::numeric_limits<float>::infinity());
     std::uint64_t traced = 0;
     for (const std::int32_t lane : lanes) {

@@ -117,9 +117,7 @@ std::vector<float> transform_cells(std::vector<float> values, std::uint32_t m, s
     // Each level on which all four values of a block coincide doubles them.
     const float scale = static_cast<float>(n / m);
     formats::haar_forward_cube(std::span<float>(values), m);
-    if (m == n) {
-        return values;
-    }
+    if (m == n) return values;
     std::vector<float> fine(formats::cubemap_texels(n), 0.0f);
     for (std::size_t face = 0; face < formats::kCubeFaces; ++face) {
         for (std::size_t row = 0; row < m; ++row) {

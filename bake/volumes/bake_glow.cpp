@@ -31,9 +31,7 @@ void append_bricks(const formats::SparseGrid<glm::vec3>& grid, const NodeLattice
     record.first_brick = static_cast<std::uint32_t>(glow.brick.size());
     for (std::uint32_t i = 0; i < lattice.brick.size() && record.code_scale > 0; ++i) {
         const std::uint32_t own = grid.brick_at(lattice.brick[i]);
-        if (own == formats::SparseGrid<glm::vec3>::kEmpty) {
-            continue;
-        }
+        if (own == formats::SparseGrid<glm::vec3>::kEmpty) continue;
         glow.brick.push_back(i);
         for (const glm::vec3& v : grid.brick(own)) {
             glow.code.push_back(formats::pack_shared(color_of(v / record.code_scale)));
@@ -65,9 +63,7 @@ std::vector<std::vector<glm::vec3>> scatter_glow(const VolumeJob& job, const Pla
                                                  const Context& context, std::uint64_t& rays) {
     std::vector<std::vector<glm::vec3>> all(grids.size());
     const std::uint32_t terms = layout.glow_terms;
-    if (terms == 0) {
-        return all;
-    }
+    if (terms == 0) return all;
     const std::size_t count = nodes.lattices[layout.volume].node.size();
     const GlowWalkSpace space{nodes.space, grids, job.rays, job.knobs.seed};
     struct Block {

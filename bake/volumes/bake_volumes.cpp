@@ -318,9 +318,7 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
             return gather_node_rows(job, nodes, std::move(lit), seen ? &*seen : nullptr, context,
                                     measured, rays);
         });
-    if (!rows) {
-        return std::move(rows).error();
-    }
+    if (!rows) return std::move(rows).error();
     if (context.cancelled()) {
         return formats::Volumes{};
     }

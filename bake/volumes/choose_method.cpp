@@ -67,9 +67,7 @@ void plan_methods(const formats::Scene& scene, const Knobs& knobs, std::span<Vol
         VolumeLayout& layout = layouts[i];
         PlanEntry* const entry = find_often(entries, layout.volume);
         layout.method = VolumeMethod::walks;
-        if (layout.often_terms == 0 || entry == nullptr) {
-            continue;
-        }
+        if (layout.often_terms == 0 || entry == nullptr) continue;
         std::string why = "random walks";
         if (asked == VolumeMethod::path_integration && !can_integrate) {
             why =

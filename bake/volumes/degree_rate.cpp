@@ -11,9 +11,7 @@ double rate_of_degree(double mean_cosine) {
     phase.type = formats::PhaseFunction::Type::henyey_greenstein;
     phase.g = static_cast<float>(mean_cosine);
     const ScaledPhase scaled = scale_phase(phase);
-    if (scaled.degree < 2) {
-        return 0;
-    }
+    if (scaled.degree < 2) return 0;
     const auto square = [&](unsigned l) {
         const double lambda = scaled.lambda[l];
         return (2 * l + 1) * lambda * lambda;

@@ -29,9 +29,7 @@ void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, floa
             return;
         }
     }
-    if (!(begin < end)) {
-        return;
-    }
+    if (!(begin < end)) return;
     glm::ivec3 cell;
     glm::vec3 next, pitch;
     for (int axis = 0; axis < 3; ++axis) {
@@ -54,16 +52,12 @@ void visit_cells(const Volume& volume, glm::vec3 from, glm::vec3 direction, floa
             } else {
                 goes_on = visit(bound, begin, leave);
             }
-            if (!goes_on) {
-                return;
-            }
+            if (!goes_on) return;
         }
         begin = leave;
         cell[axis] += d[axis] > 0 ? 1 : -1;
         next[axis] += pitch[axis];
-        if (begin >= end || cell[axis] < 0 || cell[axis] >= volume.extent[axis]) {
-            return;
-        }
+        if (begin >= end || cell[axis] < 0 || cell[axis] >= volume.extent[axis]) return;
     }
 }
 
@@ -75,9 +69,7 @@ Collision sample_flight(const DensitySpace& space, std::size_t band, glm::vec3 f
     for (std::uint32_t v = 0; v < space.volumes.size(); ++v) {
         const DensityVolume& volume = space.volumes[v];
         const float sigma = volume.sigma_t[band];
-        if (sigma <= 0) {
-            continue;
-        }
+        if (sigma <= 0) continue;
         // The optical depth to the next possible collision goes on from cell to cell.
         float left = -std::log(1 - random());
         visit_cells(

@@ -36,14 +36,10 @@ std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::ve
             sum[i] += glm::vec3(weight[0], weight[1], weight[2]) *
                       glow_along(walk.glow[i], at, direction, length);
         }
-        if (!hit.happens) {
-            break;
-        }
+        if (!hit.happens) break;
         at += hit.distance * direction;
         const DensityVolume& own = walk.space.volumes[hit.volume];
-        if (!survives(own.albedo_at(at), bands.first, bands.end, weight, random)) {
-            break;
-        }
+        if (!survives(own.albedo_at(at), bands.first, bands.end, weight, random)) break;
         const SampledCosine sampled = turn_walk(own.phase, direction, random);
         for (float& w : weight) {
             w *= sampled.weight;

@@ -70,9 +70,7 @@ SentShare largest_share_of_surfaces(const formats::Scene& scene) {
         float vertex = 0;
         bool is_there = false;
         for (const formats::Primitive& primitive : scene.primitives) {
-            if (primitive.material != m || primitive.index.empty()) {
-                continue;
-            }
+            if (primitive.material != m || primitive.index.empty()) continue;
             is_there = true;
             vertex = primitive.color.empty() ? std::max(vertex, 1.0f) : vertex;
             for (const formats::Rgb& c : primitive.color) {
@@ -94,9 +92,7 @@ double largest_glow(const formats::Volume& volume) {
     for (const glm::vec3& v : volume.emission.value) {
         most = std::max({most, v.x, v.y, v.z});
     }
-    if (!(most > 0)) {
-        return 0;
-    }
+    if (!(most > 0)) return 0;
     formats::SparseGrid<glm::vec3> box = volume.emission;
     box.to_scene = volume.density.to_scene;
     return static_cast<double>(most) * longest_line(box.corners());

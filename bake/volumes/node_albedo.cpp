@@ -78,9 +78,7 @@ Squares compare_brick(const DensityVolume& volume, glm::ivec3 brick, std::uint32
 
 std::vector<glm::vec3> node_albedo_shares(const DensityVolume& volume, const NodeLattice& lattice) {
     std::vector<glm::vec3> shares(lattice.node.size(), glm::vec3(1));
-    if (volume.scattering == nullptr) {
-        return shares;
-    }
+    if (volume.scattering == nullptr) return shares;
     for (std::size_t i = 0; i < shares.size(); ++i) {
         const glm::vec3 own = albedo_of_node(volume, lattice.node[i], lattice.spacing);
         for (int band = 0; band < 3; ++band) {
@@ -92,9 +90,7 @@ std::vector<glm::vec3> node_albedo_shares(const DensityVolume& volume, const Nod
 }
 
 double lost_albedo_detail(const DensityVolume& volume, std::uint32_t spacing) {
-    if (volume.scattering == nullptr || spacing <= 1) {
-        return 0;
-    }
+    if (volume.scattering == nullptr || spacing <= 1) return 0;
     constexpr std::size_t kMostBricks = 1024;
     const Grid& grid = *volume.grid;
     const std::size_t stride = (grid.brick_count() + kMostBricks - 1) / kMostBricks;

@@ -36,9 +36,7 @@ std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spa
         }
     }
     std::vector<bool> has;
-    if (is_empty) {
-        return has;
-    }
+    if (is_empty) return has;
     constexpr int kSide = Grid::kSide;
     const int cells = kSide / spacing;
     has.resize(static_cast<std::size_t>(cells * cells * cells));
@@ -47,9 +45,7 @@ std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spa
         const glm::ivec3 above = v / kSide;
         const float* const own =
             values[static_cast<std::size_t>(above.z << 2 | above.y << 1 | above.x)];
-        if (own == nullptr || !(own[Grid::offset_in_brick(v)] > 0)) {
-            return;
-        }
+        if (own == nullptr || !(own[Grid::offset_in_brick(v)] > 0)) return;
         is_empty = false;
         // Both cells that share a voxel have what it has.
         for_each_point(glm::max((v + spacing - 1) / spacing - 1, glm::ivec3(0)),
@@ -62,9 +58,7 @@ std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spa
 bool touches_density(const std::vector<bool>& has, glm::ivec3 corner, int cells) {
     for (int c = 0; c < 8; ++c) {
         const glm::ivec3 at = corner - corner_of_cube(c);
-        if (is_within(glm::ivec3(cells), at) && has[number_in(glm::ivec3(cells), at)]) {
-            return true;
-        }
+        if (is_within(glm::ivec3(cells), at) && has[number_in(glm::ivec3(cells), at)]) return true;
     }
     return false;
 }
@@ -141,13 +135,9 @@ NodesAround nodes_around(const NodeLattice& lattice, glm::vec3 index) {
     around.node.fill(formats::kNoNode);
     const glm::vec3 low = glm::floor(index / kSide);
     const glm::ivec3 b = glm::ivec3(low) - lattice.first_brick;
-    if (!is_within(lattice.extent, b)) {
-        return around;
-    }
+    if (!is_within(lattice.extent, b)) return around;
     const std::uint32_t brick = lattice.table[number_in(lattice.extent, b)];
-    if (brick == formats::kNoBrick) {
-        return around;
-    }
+    if (brick == formats::kNoBrick) return around;
     const int cells = Grid::kSide / static_cast<int>(lattice.spacing);
     const glm::vec3 at = (index - low * kSide) / static_cast<float>(lattice.spacing);
     const glm::ivec3 cell = glm::clamp(glm::ivec3(at), 0, cells - 1);

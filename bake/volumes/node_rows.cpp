@@ -25,9 +25,7 @@ float find_threshold(std::span<const float> coefficients, double lost) {
     double sum = 0;
     for (const float s : size) {
         sum += static_cast<double>(s) * static_cast<double>(s);
-        if (!(sum <= lost)) {
-            return s;
-        }
+        if (!(sum <= lost)) return s;
     }
     return std::numeric_limits<float>::infinity();
 }

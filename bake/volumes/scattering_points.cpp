@@ -73,18 +73,14 @@ void find_scattering_points(const DensitySpace& space, const std::vector<bool>& 
     for (const StepLight& own : light) {
         all += own.mean;
     }
-    if (!(all > 0)) {
-        return;
-    }
+    if (!(all > 0)) return;
     const float part = all / static_cast<float>(count);
     float before = 0;  // light of the steps before
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const float own = light[i].mean;
         while (points.size() < count) {
             const float target = (static_cast<float>(points.size()) + shift) * part;
-            if (!(own > 0) || target >= before + own) {
-                break;
-            }
+            if (!(own > 0) || target >= before + own) break;
             const float share = std::clamp((target - before) / own, 0.0f, 1.0f);
             ScatteringPoint point{
                 from + (steps[i].begin + share * (steps[i].end - steps[i].begin)) * direction,

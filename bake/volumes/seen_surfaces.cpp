@@ -22,9 +22,7 @@ std::vector<float> weigh_rows(const ShownSurfaces& shown, const formats::Primiti
         return weight;
     }
     const glm::vec3 normal = shown.receivers[primitive].inside[vertex].normal;
-    if (normal == glm::vec3(0)) {
-        return weight;
-    }
+    if (normal == glm::vec3(0)) return weight;
     weight = weigh_rows_of_medium(shown.layouts[shown.scene.primitives[primitive].material],
                                   record.eta, normal);
     for (float& w : weight) {
@@ -44,9 +42,7 @@ std::vector<float> read_cells(const formats::SparseRowsView& rows, const formats
     const std::uint32_t n = rows.cubemap_size;
     std::vector<float> sum(formats::cubemap_texels(n)), row(sum.size());
     for (std::uint32_t k = 0; k < weight.size(); ++k) {
-        if (weight[k] == 0) {
-            continue;
-        }
+        if (weight[k] == 0) continue;
         formats::decode_row(rows, range, static_cast<std::uint32_t>(vertex * weight.size()) + k,
                             band, row);
         for (std::size_t i = 0; i < row.size(); ++i) {
@@ -59,9 +55,7 @@ std::vector<float> read_cells(const formats::SparseRowsView& rows, const formats
 
 // Whether a side that a walk meets has a row; `normal`: of the vertex.
 bool is_seen(const formats::Material& material, bool behind, float along_normal) {
-    if (material.sheet) {
-        return true;
-    }
+    if (material.sheet) return true;
     // Triangles of double-sided surfaces may be wound against their normals.
     return material.double_sided && !material.medium ? along_normal < 0 : !behind;
 }
@@ -69,9 +63,7 @@ bool is_seen(const formats::Material& material, bool behind, float along_normal)
 // What a row is multiplied by for the light that arrives, of which a lobe mirrors its share. Rows
 // of a thin wall hold shares of the light of both sides, which are taken to be alike.
 float share_of_rows(const formats::Material& material) {
-    if (!material.sheet) {
-        return 1;
-    }
+    if (!material.sheet) return 1;
     const float both = formats::luminance(material.sheet->reflect + material.sheet->transmit);
     return both > 0 ? 1 / both : 0;
 }
@@ -146,9 +138,7 @@ void add_seen_surface(const SeenSurfaces& seen, const MetSurface& met, glm::vec3
     point.barycentric = {1 - met.u - met.v, met.u, met.v};
     const std::size_t corner = random < point.barycentric.x ? 0 : random < 1 - met.v ? 1 : 2;
     const std::size_t vertex = primitive.index[met.first_index + corner];
-    if (!is_seen(material, met.behind, glm::dot(direction, primitive.normal[vertex]))) {
-        return;
-    }
+    if (!is_seen(material, met.behind, glm::dot(direction, primitive.normal[vertex]))) return;
     const SurfaceAlbedo albedo =
         eval_surface_albedo(seen.scene, seen.layouts[primitive.material], point);
     const formats::Rgb color = albedo.diffuse + share_of_rows(material) * albedo.mirrored;

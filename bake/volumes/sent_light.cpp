@@ -47,9 +47,7 @@ void visit_coarse(const SentLight& light, const formats::RowRange& range, std::u
     for (std::uint32_t i = rows.row_offset[range.first_row + row]; i < end; ++i) {
         const std::uint16_t to =
             light.coarse[rows.index_bytes == 2 ? rows.index16[i] : rows.index32[i]];
-        if (to == SentLight::kFiner) {
-            continue;
-        }
+        if (to == SentLight::kFiner) continue;
         const std::size_t at = range.first_code + std::size_t{i - first} * range.bands + band;
         const std::int32_t value = rows.code_bits == 8 ? formats::detail_value(rows.code8[at])
                                                        : formats::detail_value(rows.code16[at]);
@@ -93,9 +91,7 @@ std::uint32_t choose_node(const NodeLattice& lattice, glm::vec3 index, float u) 
     for (std::size_t i = 0; around.found && i < around.node.size(); ++i) {
         if (around.weight[i] > 0) {
             chosen = around.node[i];
-            if (u < around.weight[i]) {
-                break;
-            }
+            if (u < around.weight[i]) break;
         }
         u -= around.weight[i];
     }
@@ -107,9 +103,7 @@ void add_ray(const SentLight& light, glm::vec3 from, glm::vec3 direction, float 
     std::vector<ScatteringPoint> points;
     find_scattering_points(light.space, light.sends, from, direction, reach, kPointsOfSentRay,
                            random[2], points);
-    if (points.empty()) {
-        return;
-    }
+    if (points.empty()) return;
     float choice = random[3];
     Harmonics view{};
     formats::eval_spherical_harmonics({-direction.x, -direction.y, -direction.z}, view);
@@ -206,9 +200,7 @@ SentLight make_sent_light(const formats::Scene& scene, const RayScene& rays,
         std::lround(std::sqrt(static_cast<double>(count_sent_light_rays(knobs.quality)))));
     for (std::uint32_t i = 0; i < layouts.size(); ++i) {
         const std::uint32_t v = layouts[i].volume;
-        if (!layouts[i].lights_surfaces || baked.records[i].node_count == 0) {
-            continue;
-        }
+        if (!layouts[i].lights_surfaces || baked.records[i].node_count == 0) continue;
         light.lattices[v] = lattice_of(scene.volumes[v], layouts[i]);
         light.record[v] = i;
         light.sends[v] = true;

@@ -17,9 +17,7 @@ template <class Kept>
 Grid keep_bricks(const Grid& grid, Kept&& is_kept) {
     Grid part{grid.first_brick, grid.extent, grid.table, {}, grid.to_scene};
     for (std::uint32_t& number : part.table) {
-        if (number == Grid::kEmpty) {
-            continue;
-        }
+        if (number == Grid::kEmpty) continue;
         if (!is_kept(number)) {
             number = Grid::kEmpty;
             continue;

@@ -90,9 +90,7 @@ PathSteps follow_path(const View& view, const QuasiPath& path, const PathCells::
     const auto medium = [&](glm::dvec3 x) { return view.medium(x); };
     march_quasi_path(path, medium, view.limits, [&](const PathStep& step) {
         ++steps;
-        if (step.depth <= 0) {
-            return true;
-        }
+        if (step.depth <= 0) return true;
         const DepthsAround around = depths_around(walk, glm::vec3(step.position));
         double most = 0;
         for (std::size_t band = 0; band < bands; ++band) {
@@ -104,9 +102,7 @@ PathSteps follow_path(const View& view, const QuasiPath& path, const PathCells::
             at = {at.ell + depth, at.absorption + lost};
             const double survival = std::exp(-absorption);
             most = std::max(most, survival);
-            if (!around.found) {
-                continue;
-            }
+            if (!around.found) continue;
             for (std::size_t l = 0; l < degrees; ++l) {
                 moment[l] = weight * depth * survival * moment_of_source(view.space.lambda[l], ell);
             }

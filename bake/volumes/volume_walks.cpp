@@ -24,9 +24,7 @@ void add_light(const VolumeWalkSpace& walk, const Track& track, std::uint32_t vo
                glm::vec3 direction, const std::array<float, 3>& weight, std::span<float> sum) {
     const DensityVolume& own = walk.space.volumes[volume];
     const NodesAround around = nodes_around(walk.lattices[volume], own.to_index * at + own.offset);
-    if (!around.found) {
-        return;
-    }
+    if (!around.found) return;
     ScatteredLight light;
     bool is_dark = true;
     for (std::size_t i = 0; i < around.node.size(); ++i) {
@@ -38,9 +36,7 @@ void add_light(const VolumeWalkSpace& walk, const Track& track, std::uint32_t vo
         light.depth[i] = walk.depths.codes(node, walk.depths.bands == 1 ? 0 : track.band);
         light.node_weight[i] = around.weight[i];
     }
-    if (is_dark) {
-        return;
-    }
+    if (is_dark) return;
     light.direction = direction;
     light.phase = &own.phase.monomial;
     for (std::size_t band = track.first; band < track.end; ++band) {
@@ -69,9 +65,7 @@ std::uint64_t follow(const VolumeWalkSpace& walk, const WalkReceiver& receiver, 
         }
         at += hit.distance * direction;
         const DensityVolume& own = walk.space.volumes[hit.volume];
-        if (!survives(own.albedo_at(at), track.first, track.end, weight, random)) {
-            break;
-        }
+        if (!survives(own.albedo_at(at), track.first, track.end, weight, random)) break;
         if (receiver.sees_sky) {
             add_light(walk, track, hit.volume, at, direction, weight, sum);
         }

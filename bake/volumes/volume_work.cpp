@@ -135,9 +135,7 @@ std::vector<VolumeWork> count_volume_work(const formats::Scene& scene,
                                           std::span<const VolumeLayout> layouts,
                                           const Knobs& knobs) {
     std::vector<VolumeWork> works;
-    if (layouts.empty()) {
-        return works;
-    }
+    if (layouts.empty()) return works;
     const DensitySpace space = make_density_space(scene, layouts);
     for (const VolumeLayout& layout : layouts) {
         const formats::Volume& volume = scene.volumes[layout.volume];

@@ -48,9 +48,7 @@ bool survives(const std::array<float, 3>& albedo, std::size_t first, std::size_t
         most = std::max(most, std::abs(weight[band]));
     }
     if (most < kWalkRoulette) {
-        if (random() * kWalkRoulette >= most) {
-            return false;
-        }
+        if (random() * kWalkRoulette >= most) return false;
         for (float& w : weight) {
             w *= kWalkRoulette / most;
         }
@@ -82,14 +80,10 @@ WalkCount count_walk(const DensitySpace& space, glm::vec3 at, FlightRandom& rand
     for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
         ++count.flights;
         const Collision hit = sample_flight(space, kGreen, at, direction, kForever, random);
-        if (!hit.happens) {
-            break;
-        }
+        if (!hit.happens) break;
         at += hit.distance * direction;
         const DensityVolume& own = space.volumes[hit.volume];
-        if (!survives(own.albedo_at(at), kGreen, kGreen + 1, weight, random)) {
-            break;
-        }
+        if (!survives(own.albedo_at(at), kGreen, kGreen + 1, weight, random)) break;
         ++count.collisions;
         turn_walk(own.phase, direction, random);
     }

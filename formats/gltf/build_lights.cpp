@@ -93,9 +93,7 @@ bool place(const NodeInstance& node, const std::string& where, double metres_per
         return false;
     }
     light.position = light.type == Light::Type::directional ? glm::vec3(0) : position;
-    if (light.type == Light::Type::point) {
-        return true;
-    }
+    if (light.type == Light::Type::point) return true;
     if (!(length > 0)) {
         report.error(where, "its light has no direction: the node's scale along z is 0",
                      "give the node a scale above 0");

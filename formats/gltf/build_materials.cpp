@@ -28,9 +28,7 @@ void add_normal_map(const MaterialSource& source, const std::string& where, Text
                     Material& material, std::vector<std::string>& remarks) {
     constexpr double kMostScale = 1e3;  // far steeper than any surface
     const TextureUse& use = source.normal_texture;
-    if (use.texture == kNone) {
-        return;
-    }
+    if (use.texture == kNone) return;
     if (!share_coordinates(source, use, material)) {
         remarks.emplace_back(
             "normalTexture is mapped otherwise than the material's other textures: it is not used "
@@ -63,9 +61,7 @@ std::string unsimulated_extension(const std::string& name) {
         {"KHR_texture_basisu", "Basis Universal textures"},
     }};
     for (const auto& [known, meaning] : kKnown) {
-        if (name == known) {
-            return name + " is not simulated: " + std::string(meaning);
-        }
+        if (name == known) return name + " is not simulated: " + std::string(meaning);
     }
     return "extension " + in_quotes(name) + " is not simulated";
 }
@@ -140,9 +136,7 @@ void add_textures(const MaterialSource& source, const std::string& where, Textur
         material.wrap_v = loaded.wrap_v;
     }
     const TextureUse& gloss = source.metallic_roughness_texture;
-    if (gloss.texture == kNone || material.medium || material.gloss.is_diffuse()) {
-        return;
-    }
+    if (gloss.texture == kNone || material.medium || material.gloss.is_diffuse()) return;
     if (color.texture == kNone) {
         material.base_color_texcoord = gloss.texcoord;
         material.base_color_uv_transform = gloss.transform;
@@ -168,9 +162,7 @@ void add_scatter_textures(const MaterialSource& source, const std::string& where
     const TranslucencySource& inside = source.translucency;
     bool is_mapped = source.base_color_texture.texture != kNone;
     const auto add = [&](const TextureUse& use, const char* name, InnerTexture& to) {
-        if (use.texture == kNone) {
-            return;
-        }
+        if (use.texture == kNone) return;
         if (!is_mapped) {
             material.base_color_texcoord = use.texcoord;
             material.base_color_uv_transform = use.transform;
@@ -198,9 +190,7 @@ void add_scatter_textures(const MaterialSource& source, const std::string& where
 
 void add_coverage(const MaterialSource& source, Material& material,
                   std::vector<std::string>& remarks) {
-    if (source.alpha_mode == "OPAQUE") {
-        return;
-    }
+    if (source.alpha_mode == "OPAQUE") return;
     const bool is_mask = source.alpha_mode == "MASK";
     if (!is_mask && source.alpha_mode != "BLEND") {
         remarks.push_back("alphaMode " + in_quotes(source.alpha_mode) +

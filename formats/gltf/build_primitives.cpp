@@ -66,9 +66,7 @@ void place_normals(const PrimitiveData& data, const Placement& placement, Primit
         const glm::dvec3 stored = triple(data.normal, i);
         // A file may hold a vector of any length; only one without a direction is a fault.
         const double stored_length = glm::length(stored);
-        if (!std::isfinite(stored_length) || !(stored_length > 1e-6)) {
-            continue;
-        }
+        if (!std::isfinite(stored_length) || !(stored_length > 1e-6)) continue;
         const glm::dvec3 n = (placement.skinned.empty() ? by_node : turn(placement.at(i))) *
                              (stored / stored_length);
         const double length = glm::length(n);
@@ -121,9 +119,7 @@ void place_colors(const PrimitiveData& data, const Material& material, Primitive
     const std::size_t stride = data.color_components;
     std::size_t bad = 0;
     const auto reflectance = [&](float c) {
-        if (c >= 0.0f && c <= 1.0f) {
-            return c;
-        }
+        if (c >= 0.0f && c <= 1.0f) return c;
         ++bad;
         return c > 1.0f ? 1.0f : 0.0f;  // NaN becomes 0
     };
@@ -172,9 +168,7 @@ void place_indices(const PrimitiveData& data, bool mirrored, Primitive& out, Rep
 
 bool has_area(const Primitive& primitive) {
     for (std::size_t t = 0; t + 2 < primitive.index.size(); t += 3) {
-        if (!is_flat(primitive, t)) {
-            return true;
-        }
+        if (!is_flat(primitive, t)) return true;
     }
     return false;
 }
@@ -217,9 +211,7 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
                  .joints = !instance.joints.empty(),
                  .morph_weights = node.weights.empty() ? mesh.weights : node.weights},
                 out.name, report);
-            if (!data) {
-                continue;
-            }
+            if (!data) continue;
             const Placement placement = place_primitive(instance, *data, out.name, report);
             place_positions(*data, placement, metres_per_unit, scene.origin, out, report);
             place_normals(*data, placement, out);

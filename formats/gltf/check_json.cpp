@@ -47,9 +47,7 @@ void check_version(const Json& root, Report& report) {
 
 void check_required_extensions(const Json& root, Report& report) {
     const Json* required = find_member(root, "extensionsRequired");
-    if (!required) {
-        return;
-    }
+    if (!required) return;
     if (!required->is_array()) {
         report.error("extensionsRequired", "it is not an array", "");
         return;
@@ -208,9 +206,7 @@ bool within_json_bounds(std::string_view text, Report& report) {
 }
 
 std::optional<nlohmann::json> parse_checked_json(std::string_view text, Report& report) {
-    if (!within_json_bounds(text, report)) {
-        return std::nullopt;
-    }
+    if (!within_json_bounds(text, report)) return std::nullopt;
     Json root;
     try {
         root = Json::parse(text);
@@ -223,9 +219,7 @@ std::optional<nlohmann::json> parse_checked_json(std::string_view text, Report& 
     }
     check_version(root, report);
     check_required_extensions(root, report);
-    if (report.failed()) {
-        return std::nullopt;
-    }
+    if (report.failed()) return std::nullopt;
     return root;
 }
 
@@ -239,9 +233,7 @@ void check_member_types(const nlohmann::json& root, Report& report) {
             report.error(name, "it is not an array of objects");
         }
     }
-    if (report.failed()) {
-        return;
-    }
+    if (report.failed()) return;
     check_indices(root, "", report);
     if (const auto nodes = root.find("nodes"); nodes != root.end()) {
         for (std::size_t i = 0; i < nodes->size(); ++i) {

@@ -28,13 +28,9 @@ Box bounds_of(const Document& document, const Mesh& mesh, const std::vector<Byte
     Box box;
     for (const MeshPrimitive& primitive : mesh.primitives) {
         const auto position = primitive.attributes.find("POSITION");
-        if (primitive.mode < Mode::triangles || position == primitive.attributes.end()) {
-            continue;
-        }
+        if (primitive.mode < Mode::triangles || position == primitive.attributes.end()) continue;
         const Accessor& accessor = document.accessors[position->second];
-        if (accessor.is_matrix || accessor.components != 3) {
-            continue;
-        }
+        if (accessor.is_matrix || accessor.components != 3) continue;
         const std::vector<float> value = read_floats(document, buffers, position->second).value;
         for (std::size_t i = 0; i + 2 < value.size(); i += 3) {
             const glm::dvec3 p(value[i], value[i + 1], value[i + 2]);
@@ -48,9 +44,7 @@ Box bounds_of(const Document& document, const Mesh& mesh, const std::vector<Byte
 
 double origin_along_axis(double centre, double radius) {
     constexpr double kNear = 16;  // [radii]
-    if (!std::isfinite(centre) || !(radius > 0) || std::abs(centre) <= kNear * radius) {
-        return 0;
-    }
+    if (!std::isfinite(centre) || !(radius > 0) || std::abs(centre) <= kNear * radius) return 0;
     int exponent = 0;
     std::frexp(radius, &exponent);
     const double step = std::ldexp(1.0, exponent);  // in (radius, 2 radius]
@@ -99,9 +93,7 @@ glm::dvec3 choose_origin(const Document& document, const std::vector<MeshInstanc
             add(joint);
         }
     }
-    if (scene.is_empty()) {
-        return glm::dvec3(0);
-    }
+    if (scene.is_empty()) return glm::dvec3(0);
     const glm::dvec3 half = 0.5 * scene.high - 0.5 * scene.low;
     const glm::dvec3 centre = scene.low + half;
     const double radius = std::max({half.x, half.y, half.z});

@@ -12,9 +12,7 @@ namespace opaline::formats::gltf {
 /// `value` in its range; a remark where it was not. NaN becomes the least.
 inline double clamp_factor(double value, double least, double greatest, const char* name,
                            std::vector<std::string>& remarks) {
-    if (value >= least && value <= greatest) {
-        return value;
-    }
+    if (value >= least && value <= greatest) return value;
     remarks.push_back(std::string(name) + " is out of its range and is clamped");
     return value > least ? greatest : least;
 }

@@ -82,9 +82,7 @@ void complete_normals(std::span<Primitive> instance, double smooth_angle, Comput
         any_missing = any_missing || p.normal.size() != p.position.size();
         any_open = any_open || std::any_of(p.normal.begin(), p.normal.end(), lacks_direction);
     }
-    if (!any_missing && !any_open) {
-        return;
-    }
+    if (!any_missing && !any_open) return;
     std::vector<glm::vec3> position;
     std::vector<std::uint32_t> index;
     for (const Primitive& primitive : instance) {
@@ -127,9 +125,7 @@ void complete_normals(std::span<Primitive> instance, double smooth_angle, Comput
 }
 
 void tell_of_normals(const ComputedNormals& made, double smooth_angle, Report& report) {
-    if (made.primitives == 0) {
-        return;
-    }
+    if (made.primitives == 0) return;
     std::string how = "flat, as glTF says";
     if (smooth_angle > 0) {
         how = std::to_string(smooth_angle);

@@ -54,9 +54,7 @@ std::optional<Container> split_binary(std::span<const std::byte> bytes, Report& 
     bool first = true;
     for (std::size_t at = 12; at < length;) {
         const std::string where = "chunk at byte " + std::to_string(at);
-        if (length - at < 8) {
-            return report.fail(where, "its header is cut off", again);
-        }
+        if (length - at < 8) return report.fail(where, "its header is cut off", again);
         const std::size_t size = read_u32(bytes, at);
         const std::uint32_t type = read_u32(bytes, at + 4);
         at += 8;
@@ -93,9 +91,7 @@ std::optional<std::vector<std::byte>> read_whole_file(const std::filesystem::pat
                            "check the path");
     }
     const auto size = std::filesystem::file_size(path, code);
-    if (code) {
-        return report.fail(where, "its size cannot be read: " + code.message(), "");
-    }
+    if (code) return report.fail(where, "its size cannot be read: " + code.message(), "");
     if (size > kMaxFileBytes) {
         report.over_limit(where,
                           "it has " + std::to_string(size) + " bytes, the limit is " +
@@ -113,9 +109,7 @@ std::optional<std::vector<std::byte>> read_whole_file(const std::filesystem::pat
 }
 
 std::optional<Container> split_container(std::span<const std::byte> bytes, Report& report) {
-    if (bytes.size() >= 4 && read_u32(bytes, 0) == kMagic) {
-        return split_binary(bytes, report);
-    }
+    if (bytes.size() >= 4 && read_u32(bytes, 0) == kMagic) return split_binary(bytes, report);
     const std::string_view text = as_text(bytes);
     const std::size_t start = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
     if (start == std::string_view::npos || text[start] != '{') {

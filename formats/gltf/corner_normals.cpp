@@ -138,9 +138,7 @@ void join_smooth_corners(const Faces& faces, std::size_t places, double least_co
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t p = faces.place[t + k], q = faces.place[t + (k + 1) % 3];
                 const auto found = mesh.find_halfedge(vertex[p], vertex[q]);
-                if (!found.is_valid()) {
-                    continue;
-                }
+                if (!found.is_valid()) continue;
                 const TriMesh::HalfedgeHandle side = found;
                 for (const auto at : {side, mesh.opposite_halfedge_handle(side)}) {
                     if (!mesh.is_boundary(at)) {

@@ -24,20 +24,14 @@ std::optional<Bytes> compressed_bytes(const Json& root, const Json& extension,
                                       const Resources& resources) {
     const auto view_index = whole_in(extension, "bufferView");
     const Json* views = find_member(root, "bufferViews");
-    if (!view_index || !views || *view_index >= views->size()) {
-        return std::nullopt;
-    }
+    if (!view_index || !views || *view_index >= views->size()) return std::nullopt;
     const Json& view = (*views)[*view_index];
     const auto buffer = whole_in(view, "buffer");
     const auto length = whole_in(view, "byteLength");
     const std::uint64_t offset = whole_in(view, "byteOffset").value_or(0);
-    if (!buffer || *buffer >= resources.buffers.size() || !length) {
-        return std::nullopt;
-    }
+    if (!buffer || *buffer >= resources.buffers.size() || !length) return std::nullopt;
     const Bytes bytes = resources.buffers[*buffer];
-    if (offset > bytes.size() || *length > bytes.size() - offset) {
-        return std::nullopt;
-    }
+    if (offset > bytes.size() || *length > bytes.size() - offset) return std::nullopt;
     return bytes.subspan(offset, *length);
 }
 
@@ -71,9 +65,7 @@ std::string header_fault(Bytes bytes) {
         for (int shift = 0; at < bytes.size() && shift < 35; shift += 7) {
             const std::uint64_t digit = byte(at++);
             value |= (digit & 0x7f) << shift;
-            if (digit < 0x80) {
-                return value;
-            }
+            if (digit < 0x80) return value;
         }
         return ~std::uint64_t{0};
     };
@@ -189,9 +181,7 @@ std::string decode_primitive(Json& root, Resources& resources, const Json& exten
     if (!bytes || !ids || !ids->is_object() || !attributes || !attributes->is_object()) {
         return "its bufferView or attributes are missing or out of range";
     }
-    if (std::string fault = header_fault(*bytes); !fault.empty()) {
-        return fault;
-    }
+    if (std::string fault = header_fault(*bytes); !fault.empty()) return fault;
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     draco::Decoder decoder;
@@ -219,9 +209,7 @@ std::string decode_primitive(Json& root, Resources& resources, const Json& exten
 
 void decode_draco_primitives(nlohmann::json& root, Resources& resources, Report& report) {
     const Json* meshes = find_member(root, "meshes");
-    if (!meshes) {
-        return;
-    }
+    if (!meshes) return;
     for (std::size_t m = 0; m < meshes->size(); ++m) {
         // `root` grows below, so nothing may hold on to a part of it meanwhile.
         const Json* primitives = find_member(root["meshes"][m], "primitives");
@@ -229,9 +217,7 @@ void decode_draco_primitives(nlohmann::json& root, Resources& resources, Report&
         for (std::size_t p = 0; p < count; ++p) {
             Json primitive = root["meshes"][m]["primitives"][p];
             const Json* found = find_extension(primitive, kDraco);
-            if (!found) {
-                continue;
-            }
+            if (!found) continue;
             const Json extension = *found;
             const std::string fault = decode_primitive(root, resources, extension, primitive);
             if (!fault.empty()) {

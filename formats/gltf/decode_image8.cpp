@@ -22,9 +22,7 @@ namespace {
 /// Empty if an image of this size may be allocated for a file of `bytes` bytes.
 std::string size_fault(std::uint64_t width, std::uint64_t height, std::size_t bytes) {
     const std::string size = std::to_string(width) + " x " + std::to_string(height);
-    if (width == 0 || height == 0) {
-        return "the image has no pixels";
-    }
+    if (width == 0 || height == 0) return "the image has no pixels";
     if (width > kMaxImageSide || height > kMaxImageSide || width * height > kMaxImagePixels) {
         return "the image has " + size + " pixels, the limit is " + std::to_string(kMaxImageSide) +
                " on a side and " + std::to_string(kMaxImagePixels) + " in all";
@@ -70,9 +68,7 @@ void png_pull(png_structp png, png_bytep out, std::size_t count) {
 
 /// Size and conversions; false when libpng gave up.
 bool png_begin(Source& source, png_structp png, png_infop info) {
-    if (setjmp(source.escape)) {
-        return false;
-    }
+    if (setjmp(source.escape)) return false;
     png_set_read_fn(png, &source, png_pull);
     png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
     png_set_chunk_malloc_max(png, 1u << 24);
@@ -87,9 +83,7 @@ bool png_begin(Source& source, png_structp png, png_infop info) {
 }
 
 bool png_rows(Source& source, png_structp png, png_bytepp rows) {
-    if (setjmp(source.escape)) {
-        return false;
-    }
+    if (setjmp(source.escape)) return false;
     png_read_image(png, rows);
     png_read_end(png, nullptr);
     return true;
@@ -103,9 +97,7 @@ DecodedImage8 decode_png(Source& source) {
         png_destroy_read_struct(&png, &info, nullptr);
         return DecodedImage8{{}, std::move(fault)};
     };
-    if (!info) {
-        return fail("the PNG decoder ran out of memory");
-    }
+    if (!info) return fail("the PNG decoder ran out of memory");
     if (!png_begin(source, png, info)) {
         return fail(std::string("the PNG cannot be decoded: ") + source.message.data());
     }
@@ -141,9 +133,7 @@ DecodedImage8 decode_png(Source& source) {
 
 /// libjpeg only warns about missing or damaged data and paints grey; a texture must be whole.
 void jpeg_message(j_common_ptr jpeg, int level) {
-    if (level >= 0) {
-        return;
-    }
+    if (level >= 0) return;
     const int code = jpeg->err->msg_code;
     if (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE ||
         code == JWRN_MUST_RESYNC) {
@@ -162,9 +152,7 @@ void jpeg_progress(j_common_ptr jpeg) {
 }
 
 bool jpeg_begin(Source& source, jpeg_decompress_struct& jpeg) {
-    if (setjmp(source.escape)) {
-        return false;
-    }
+    if (setjmp(source.escape)) return false;
     jpeg_create_decompress(&jpeg);
     jpeg_mem_src(&jpeg, reinterpret_cast<const unsigned char*>(source.bytes.data()),
                  source.bytes.size());
@@ -174,9 +162,7 @@ bool jpeg_begin(Source& source, jpeg_decompress_struct& jpeg) {
 }
 
 bool jpeg_rows(Source& source, jpeg_decompress_struct& jpeg, std::uint8_t* rgba) {
-    if (setjmp(source.escape)) {
-        return false;
-    }
+    if (setjmp(source.escape)) return false;
     jpeg_start_decompress(&jpeg);
     while (jpeg.output_scanline < jpeg.output_height) {
         JSAMPROW row = rgba + std::size_t{4} * jpeg.output_width * jpeg.output_scanline;
@@ -226,12 +212,8 @@ DecodedImage8 decode_image8(std::span<const std::byte> bytes) {
         return bytes.size() >= magic.size() &&
                std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
     };
-    if (starts_with("\x89PNG\r\n\x1a\n")) {
-        return decode_png(source);
-    }
-    if (starts_with("\xff\xd8\xff")) {
-        return decode_jpeg(source);
-    }
+    if (starts_with("\x89PNG\r\n\x1a\n")) return decode_png(source);
+    if (starts_with("\xff\xd8\xff")) return decode_jpeg(source);
     return {{}, "its " + std::to_string(bytes.size()) + " bytes are neither PNG nor JPEG"};
 }
 

@@ -28,9 +28,7 @@ struct Compressed {
 /// Empty where the description is sound.
 std::string read_description(const Json& extension, const std::vector<Bytes>& buffers,
                              Compressed& out) {
-    if (!extension.is_object()) {
-        return "it is not an object";
-    }
+    if (!extension.is_object()) return "it is not an object";
     const auto buffer = whole_in(extension, "buffer"), length = whole_in(extension, "byteLength"),
                stride = whole_in(extension, "byteStride"), count = whole_in(extension, "count"),
                offset = extension.contains("byteOffset") ? whole_in(extension, "byteOffset")
@@ -74,9 +72,7 @@ std::string read_description(const Json& extension, const std::vector<Bytes>& bu
         return "count is " + std::to_string(out.count) + ", expected a multiple of 3";
     }
     // At least one byte a triangle, or one an index.
-    if (out.count / 3 > out.bytes.size()) {
-        return "count is too large for its compressed bytes";
-    }
+    if (out.count / 3 > out.bytes.size()) return "count is too large for its compressed bytes";
     return "";
 }
 
@@ -107,15 +103,11 @@ bool decode(const Compressed& in, std::vector<std::byte>& out) {
 
 void decode_meshopt_views(nlohmann::json& root, Resources& resources, Report& report) {
     const auto views = root.find("bufferViews");
-    if (views == root.end()) {
-        return;
-    }
+    if (views == root.end()) return;
     for (std::size_t i = 0; i < views->size(); ++i) {
         Json& view = (*views)[i];
         const Json* extension = find_extension(view, kMeshopt);
-        if (!extension) {
-            continue;
-        }
+        if (!extension) continue;
         const std::string where = "bufferView " + std::to_string(i) + " > " + kMeshopt;
         Compressed compressed;
         const std::string fault = read_description(*extension, resources.buffers, compressed);

@@ -36,9 +36,7 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     Scene scene;
     scene.source = path.string();
     auto file = read_whole_file(path, "", report);
-    if (!file) {
-        return scene;
-    }
+    if (!file) return scene;
     Resources resources;
     resources.folder = path.parent_path();
     resources.allowed = options.allowed_folders;
@@ -48,33 +46,23 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
 
     const auto container = split_container(bytes, report);
     auto json = container ? parse_checked_json(container->json, report) : std::nullopt;
-    if (!json) {
-        return scene;
-    }
+    if (!json) return scene;
     check_member_types(*json, report);
-    if (report.failed()) {
-        return scene;
-    }
+    if (report.failed()) return scene;
     media = media_text(*json);
     load_buffers(*json, *container, resources, report);
     if (!report.failed()) {
         decode_meshopt_views(*json, resources, report);
         decode_draco_primitives(*json, resources, report);
     }
-    if (report.failed()) {
-        return scene;
-    }
+    if (report.failed()) return scene;
     const auto document = parse_document(std::move(*json), report);
     if (document) {
         validate_document(*document, resources.buffers, report);
     }
-    if (report.failed()) {
-        return scene;
-    }
+    if (report.failed()) return scene;
     const SceneNodes nodes = walk_scene(*document, resources.buffers, report);
-    if (report.failed()) {
-        return scene;
-    }
+    if (report.failed()) return scene;
     if (options.check_size) {
         if (Status status = options.check_size(count_world(*document, nodes.meshes)); !status) {
             report.errors = std::move(status).error().diagnostics;
@@ -87,9 +75,7 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
                      {options.metres_per_unit, options.smooth_angle}, scene, report);
     build_lights(*document, nodes.lights, options.metres_per_unit, scene, report);
     const auto is_empty = [](const Primitive& primitive) { return primitive.index.empty(); };
-    if (report.failed()) {
-        return scene;
-    }
+    if (report.failed()) return scene;
     if (std::all_of(scene.primitives.begin(), scene.primitives.end(), is_empty)) {
         report.error("", "the scene has no triangles", "export at least one mesh with faces");
     } else if (std::none_of(scene.primitives.begin(), scene.primitives.end(), has_area)) {
@@ -118,9 +104,7 @@ Result<ImportedScene> import_gltf(const std::filesystem::path& path, const Impor
     try {
         std::string media;
         Scene scene = import(path, options, media, report);
-        if (report.failed()) {
-            return report.take_error();
-        }
+        if (report.failed()) return report.take_error();
         return ImportedScene{std::move(scene), report.take_warnings(), std::move(media),
                              std::move(report.notes)};
     } catch (const std::exception&) {
@@ -135,9 +119,7 @@ std::vector<Diagnostic> warn_of_unstated_metals(const Scene& scene) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         const Material& material = scene.materials[i];
-        if (!material.is_unstated_metal || material.medium || material.gloss.metallic < 1) {
-            continue;
-        }
+        if (!material.is_unstated_metal || material.medium || material.gloss.metallic < 1) continue;
         if (++count <= kShown) {
             names += (names.empty() ? "" : ", ") + label("material", i, material.name);
         }

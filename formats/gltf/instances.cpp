@@ -54,9 +54,7 @@ Attributes read_instances(const NamedObject& node) {
     if (extension && !attributes) {
         node.report.error(extension->where, "it has no attributes");
     }
-    if (!attributes) {
-        return instances;
-    }
+    if (!attributes) return instances;
     for (const auto& [semantic, accessor] : attributes->object.items()) {
         if (const auto index = whole_in(attributes->object, semantic.c_str(), kNone - 1)) {
             instances.emplace(semantic, static_cast<std::uint32_t>(*index));

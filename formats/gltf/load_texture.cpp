@@ -30,9 +30,7 @@ TextureWrap wrap_mode(std::uint32_t value, const std::string& where, Report& rep
 bool is_nearest_sampler(const Sampler& sampler) {
     constexpr std::uint32_t kNearest = 9728, kNearestMipmapNearest = 9984,
                             kNearestMipmapLinear = 9986;
-    if (sampler.mag_filter != kNone) {
-        return sampler.mag_filter == kNearest;
-    }
+    if (sampler.mag_filter != kNone) return sampler.mag_filter == kNearest;
     return sampler.min_filter == kNearest || sampler.min_filter == kNearestMipmapNearest ||
            sampler.min_filter == kNearestMipmapLinear;
 }

@@ -13,9 +13,7 @@ namespace {
 using Remarks = std::vector<std::string>;
 
 float unit_factor(double value, const char* name, Remarks& remarks) {
-    if (value >= 0.0 && value <= 1.0) {
-        return static_cast<float>(value);
-    }
+    if (value >= 0.0 && value <= 1.0) return static_cast<float>(value);
     remarks.push_back(std::string(name) + " is outside [0, 1] and is clamped");
     return value > 1.0 ? 1.0f : 0.0f;
 }
@@ -32,9 +30,7 @@ Rgb specular_color(glm::dvec3 color, Remarks& remarks) {
 }
 
 float index_of_refraction(double ior, Remarks& remarks) {
-    if (ior == 0.0) {
-        return 0.0f;
-    }
+    if (ior == 0.0) return 0.0f;
     if (!(ior >= 1.0)) {
         remarks.push_back("ior is below 1 and is taken as 1");
         return 1.0f;
@@ -46,9 +42,7 @@ float index_of_refraction(double ior, Remarks& remarks) {
 
 Gloss map_gloss(const TranslucencySource& source, Remarks& remarks) {
     Gloss gloss;
-    if (source.is_diffuse) {
-        return gloss;
-    }
+    if (source.is_diffuse) return gloss;
     gloss.metallic = unit_factor(source.metallic, "metallicFactor", remarks);
     gloss.roughness = unit_factor(source.roughness, "roughnessFactor", remarks);
     gloss.specular = unit_factor(source.specular, "specularFactor", remarks);

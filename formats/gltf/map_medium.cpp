@@ -38,9 +38,7 @@ std::string obstacle(const TranslucencySource& source) {
         return "transmissionFactor is 0, so that no light enters the scattering medium: the "
                "surface is baked diffuse (set it to 1)";
     }
-    if (!(source.attenuation_distance > 0.0)) {
-        return kNoDistance;
-    }
+    if (!(source.attenuation_distance > 0.0)) return kNoDistance;
     if (!std::isfinite(source.attenuation_distance)) {
         return "attenuationDistance is absent and infinite by default, so that nothing scatters: "
                "the surface is baked diffuse (set it)";
@@ -112,9 +110,7 @@ void finish_surface(const TranslucencySource& source, Medium& medium, Remarks& r
 std::optional<Medium> map_glass(const TranslucencySource& source, double metres_per_unit,
                                 Remarks& remarks) {
     const bool has_inside = source.has_volume && source.thickness > 0.0;
-    if (!has_inside || !(source.transmission > 0.0)) {
-        return std::nullopt;
-    }
+    if (!has_inside || !(source.transmission > 0.0)) return std::nullopt;
     if (!(source.attenuation_distance > 0.0)) {
         remarks.emplace_back(kNoDistance);
         return std::nullopt;
@@ -137,9 +133,7 @@ std::optional<Medium> map_glass(const TranslucencySource& source, double metres_
 }  // namespace
 
 double single_scattering_albedo(double multiscatter, double g) {
-    if (!(multiscatter > 0.0)) {
-        return 0.0;
-    }
+    if (!(multiscatter > 0.0)) return 0.0;
     const double root =
         std::sqrt(9.59217 + 41.6808 * multiscatter + 17.7126 * multiscatter * multiscatter);
     // The constants are rounded: white comes out as s = -5e-6.

@@ -41,9 +41,7 @@ std::optional<Sides> transmit_diffusely(const TranslucencySource& source, glm::d
                                         bool has_base_color_texture,
                                         std::vector<std::string>& remarks) {
     const bool scatters = source.has_scatter && source.scatter_strength.value_or(0.0) > 0.0;
-    if (!(source.diffuse_transmission > 0.0) || scatters) {
-        return std::nullopt;
-    }
+    if (!(source.diffuse_transmission > 0.0) || scatters) return std::nullopt;
     const double f =
         clamp_factor(source.diffuse_transmission, 0.0, 1.0, "diffuseTransmissionFactor", remarks);
     if (has_base_color_texture) {
@@ -59,9 +57,7 @@ std::optional<Sides> transmit_diffusely(const TranslucencySource& source, glm::d
 
 std::optional<Sides> transmit_straight(const TranslucencySource& source, glm::dvec3 base,
                                        std::vector<std::string>& remarks) {
-    if (!(source.transmission > 0.0)) {
-        return std::nullopt;
-    }
+    if (!(source.transmission > 0.0)) return std::nullopt;
     const double clear = clamp_factor(source.transmission, 0.0, 1.0, "transmissionFactor", remarks);
     return Sides{(1.0 - clear) * base, glm::dvec3(0), clear};
 }
@@ -126,9 +122,7 @@ void make_glass(const TranslucencySource& source, glm::dvec3 base, Sides& sides,
 std::optional<MappedSheet> map_sheet(const TranslucencySource& source, Rgb base_color,
                                      bool has_base_color_texture,
                                      std::vector<std::string>& remarks) {
-    if (source.has_volume && source.thickness > 0.0) {
-        return std::nullopt;
-    }
+    if (source.has_volume && source.thickness > 0.0) return std::nullopt;
     const glm::dvec3 base{base_color.r, base_color.g, base_color.b};
     auto sides = scatter(source, base, remarks);
     if (!sides) {
@@ -137,9 +131,7 @@ std::optional<MappedSheet> map_sheet(const TranslucencySource& source, Rgb base_
     if (!sides) {
         sides = transmit_straight(source, base, remarks);
     }
-    if (!sides) {
-        return std::nullopt;
-    }
+    if (!sides) return std::nullopt;
     MappedSheet mapped;
     if (sides->clear > 0) {
         make_glass(source, base, *sides, mapped, remarks);

@@ -29,9 +29,7 @@ double brightness(glm::dvec3 c) {
 /// The metallic factor under which diffuse and specular brightness come out as given: the positive
 /// root of a quadratic.
 double solve_metallic(double diffuse, double specular, double rest) {
-    if (specular < kDielectric) {
-        return 0;
-    }
+    if (specular < kDielectric) return 0;
     const double b = diffuse * rest / (1 - kDielectric) + specular - 2 * kDielectric;
     const double c = kDielectric - specular;
     const double discriminant = std::max(b * b - 4 * kDielectric * c, 0.0);
@@ -74,9 +72,7 @@ void apply_mean_specular(const Image8& image, double glossiness, Gloss& gloss) {
 }  // namespace
 
 MaterialSource as_metallic_roughness(MaterialSource source) {
-    if (!source.specular_glossiness) {
-        return source;
-    }
+    if (!source.specular_glossiness) return source;
     const SpecularGlossiness& from = *source.specular_glossiness;
     TranslucencySource& to = source.translucency;
     source.base_color = from.diffuse;
@@ -97,14 +93,10 @@ bool add_specular_glossiness(const SpecularGlossiness& source, const std::string
                              std::vector<std::string>& remarks) {
     const TextureUse& use = source.specular_glossiness_texture;
     const TextureUse& color = source.diffuse_texture;
-    if (use.texture == kNone || material.medium || material.gloss.is_diffuse()) {
-        return false;
-    }
+    if (use.texture == kNone || material.medium || material.gloss.is_diffuse()) return false;
     const auto image = loader.decode(use.texture, where);
     const double glossiness = std::clamp(source.glossiness, 0.0, 1.0);
-    if (!image) {
-        return false;
-    }
+    if (!image) return false;
     const auto use_mean = [&](const char* remark) {
         remarks.emplace_back(remark);
         apply_mean_specular(*image, glossiness, material.gloss);

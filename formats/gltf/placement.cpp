@@ -18,9 +18,7 @@ Placement place_primitive(const MeshInstance& instance, const PrimitiveData& dat
     out.world = instance.world;
     out.is_mirrored = is_mirroring(out.world);
     const std::vector<glm::dmat4>& joints = instance.joints;
-    if (joints.empty()) {
-        return out;
-    }
+    if (joints.empty()) return out;
     const std::size_t count = data.position.size() / 3, all = data.joint.size();
     if (data.joint.empty()) {
         report.warn(where, "its node has a skin, but it has no JOINTS_0: it is placed by its node",
@@ -40,9 +38,7 @@ Placement place_primitive(const MeshInstance& instance, const PrimitiveData& dat
                     "normalise the weights before export");
                 return out;
             }
-            if (weight == 0) {
-                continue;
-            }
+            if (weight == 0) continue;
             if (!(data.joint[i] < static_cast<float>(joints.size()))) {
                 report.error(where, "vertex " + std::to_string(v) + " is bound to joint " +
                                         std::to_string(static_cast<std::uint64_t>(data.joint[i])) +

@@ -50,9 +50,7 @@ std::vector<LightSource> read_lights(const Json& root, Report& report) {
     std::vector<LightSource> lights;
     const auto found = NamedObject{root, "", report}.extensions().member(kPunctual);
     const Json* list = found ? find_member(found->object, "lights") : nullptr;
-    if (!list) {
-        return lights;
-    }
+    if (!list) return lights;
     if (!is_array_of(*list, &Json::is_object)) {
         report.error(found->where, "lights is not an array of objects");
         return lights;
@@ -66,9 +64,7 @@ std::vector<LightSource> read_lights(const Json& root, Report& report) {
 
 std::uint32_t read_node_light(const NamedObject& node) {
     const auto found = node.extensions().member(kPunctual);
-    if (!found) {
-        return kNone;
-    }
+    if (!found) return kNone;
     const auto index = whole_in(found->object, "light", kMostLights);
     if (!index) {
         node.report.error(node.where,

@@ -115,9 +115,7 @@ std::vector<std::uint32_t> drawn_vertices(const Reader& reader, std::size_t vert
 
 /// glTF 2.0 specification, "Topology types": the corners of triangle i of a strip or a fan.
 std::vector<std::uint32_t> triangulate(Mode mode, std::vector<std::uint32_t> drawn) {
-    if (mode == Mode::triangles) {
-        return drawn;
-    }
+    if (mode == Mode::triangles) return drawn;
     std::vector<std::uint32_t> triangles;
     for (std::size_t i = 0; i + 2 < drawn.size(); ++i) {
         const bool strip = mode == Mode::triangle_strip;
@@ -134,9 +132,7 @@ void add_morph_targets(const Reader& reader, const std::vector<double>& weights,
     const auto& targets = reader.primitive.targets;
     for (std::size_t t = 0; t < std::min(targets.size(), weights.size()); ++t) {
         const auto weight = static_cast<float>(weights[t]);
-        if (weight == 0) {
-            continue;
-        }
+        if (weight == 0) continue;
         const std::string prefix = "morph target " + std::to_string(t) + " ";
         const auto add = [&](const char* semantic, std::size_t stride, std::vector<float>& to) {
             if (to.empty()) {
@@ -167,9 +163,7 @@ void read_joints(const Reader& reader, std::uint64_t vertices, PrimitiveData& da
                                 "it has only one of JOINTS_" + n + " and WEIGHTS_" + n);
             return;
         }
-        if (!has_joints) {
-            break;
-        }
+        if (!has_joints) break;
         constexpr const char* kRemedy = "export with one value per vertex";
         joints.push_back(reader.attribute("JOINTS_" + n, 4, 4, vertices, kRemedy));
         weights.push_back(reader.attribute("WEIGHTS_" + n, 4, 4, vertices, kRemedy));
@@ -242,9 +236,7 @@ std::optional<PrimitiveData> read_primitive(const Document& document,
                      "repair the mesh before export");
     }
     auto drawn = drawn_vertices(reader, vertices);
-    if (report.error_count() != faults) {
-        return std::nullopt;
-    }
+    if (report.error_count() != faults) return std::nullopt;
     if (primitive.mode == Mode::triangles && drawn.size() % 3 != 0) {
         report.warn(where, std::to_string(drawn.size()) +
                                " corners are no multiple of 3: the last " +

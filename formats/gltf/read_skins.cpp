@@ -19,9 +19,7 @@ bool is_index(const nlohmann::json& value) {
 std::vector<Skin> read_skins(const nlohmann::json& root, Report& report) {
     std::vector<Skin> skins;
     const nlohmann::json* found = find_member(root, "skins");
-    if (!found) {
-        return skins;
-    }
+    if (!found) return skins;
     for (const nlohmann::json& entry : *found) {
         const std::string where = "skin " + std::to_string(skins.size());
         Skin& skin = skins.emplace_back();

@@ -15,26 +15,20 @@ constexpr std::uint32_t kMostTextures = 0x7fffffff, kMostTexcoords = 255;
 /// A whole number up to `most`; absent: `otherwise`. Nothing where it is something else.
 std::optional<std::uint32_t> whole(const Json& object, const char* key, std::uint32_t most,
                                    std::uint32_t otherwise) {
-    if (!object.contains(key)) {
-        return otherwise;
-    }
+    if (!object.contains(key)) return otherwise;
     const auto found = whole_in(object, key, most);
     return found ? std::optional(static_cast<std::uint32_t>(*found)) : std::nullopt;
 }
 
 std::optional<double> number(const Json& object, const char* key) {
     const Json* found = find_member(object, key);
-    if (!found) {
-        return 0.0;
-    }
+    if (!found) return 0.0;
     return found->is_number() ? std::optional(found->get<double>()) : std::nullopt;
 }
 
 std::optional<glm::dvec2> pair(const Json& object, const char* key, glm::dvec2 otherwise) {
     const Json* found = find_member(object, key);
-    if (!found) {
-        return otherwise;
-    }
+    if (!found) return otherwise;
     return is_array_of(*found, &Json::is_number, 2)
                ? std::optional(glm::dvec2((*found)[0].get<double>(), (*found)[1].get<double>()))
                : std::nullopt;
@@ -63,9 +57,7 @@ TextureUse read_texture_use(const Json& info, const std::string& where, Report& 
     }
     TextureUse use{*index, *texcoord};
     const Json* transform = find_extension(info, "KHR_texture_transform");
-    if (!transform) {
-        return use;
-    }
+    if (!transform) return use;
     if (!transform->is_object()) {
         report.error(where, "its KHR_texture_transform is not an object");
         return {};

@@ -16,9 +16,7 @@ using Json = nlohmann::json;
 template <int kSize>
 void read_numbers(const NamedObject& from, const char* key, glm::vec<kSize, double>& value) {
     const Json* found = find_member(from.object, key);
-    if (!found) {
-        return;
-    }
+    if (!found) return;
     if (!is_array_of(*found, &Json::is_number, kSize)) {
         from.report.error(from.where, std::string(key) + " is not an array of " +
                                           (kSize == 3 ? "three" : "four") + " numbers");

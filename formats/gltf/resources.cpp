@@ -28,9 +28,7 @@ std::optional<std::string> percent_decode(std::string_view text) {
         }
         const int high = i + 2 < text.size() ? hex_digit(text[i + 1]) : -1;
         const int low = i + 2 < text.size() ? hex_digit(text[i + 2]) : -1;
-        if (high < 0 || low < 0) {
-            return std::nullopt;
-        }
+        if (high < 0 || low < 0) return std::nullopt;
         decoded += static_cast<char>(high * 16 + low);
         i += 2;
     }
@@ -56,9 +54,7 @@ std::optional<std::vector<std::byte>> decode_base64(std::string_view text) {
     int held = 0;
     for (const char c : text) {
         const int digit = base64_digit(c);
-        if (digit < 0) {
-            return std::nullopt;
-        }
+        if (digit < 0) return std::nullopt;
         bits = (bits << 6 | static_cast<std::uint32_t>(digit)) & 0xffffffu;
         held += 6;
         if (held >= 8) {
@@ -83,9 +79,7 @@ std::optional<Bytes> read_data_uri(Resources& resources, std::string_view uri,
                            "store the data as base64 or in a file");
     }
     auto bytes = decode_base64(uri.substr(comma + 1));
-    if (!bytes) {
-        return report.fail(where, "its data URI holds characters that are not base64");
-    }
+    if (!bytes) return report.fail(where, "its data URI holds characters that are not base64");
     return resources.keep(std::move(*bytes));
 }
 
@@ -140,9 +134,7 @@ Bytes Resources::keep(std::vector<std::byte> bytes) {
 std::optional<Bytes> read_inside(Resources& resources, std::string_view name,
                                  const std::string& where, Report& report) {
     const auto confined = confined_path(resources, name, where, report);
-    if (!confined) {
-        return std::nullopt;
-    }
+    if (!confined) return std::nullopt;
     const auto path = resources.folder / *confined;
     std::error_code code;
     const auto key = std::filesystem::weakly_canonical(path, code);
@@ -150,9 +142,7 @@ std::optional<Bytes> read_inside(Resources& resources, std::string_view name,
         return known->second;
     }
     auto bytes = read_whole_file(path, where + " (" + in_quotes(confined->string()) + ")", report);
-    if (!bytes) {
-        return std::nullopt;
-    }
+    if (!bytes) return std::nullopt;
     if (resources.bytes_held + bytes->size() > kMaxTotalBytes) {
         report.over_limit(
             where, "the asset's files together pass " + std::to_string(kMaxTotalBytes) + " bytes",
@@ -168,9 +158,7 @@ std::optional<Bytes> read_inside(Resources& resources, std::string_view name,
 
 std::optional<Bytes> read_uri(Resources& resources, std::string_view uri, const std::string& where,
                               Report& report) {
-    if (uri.starts_with("data:")) {
-        return read_data_uri(resources, uri, where, report);
-    }
+    if (uri.starts_with("data:")) return read_data_uri(resources, uri, where, report);
     const auto name = percent_decode(uri);
     if (!name) {
         return report.fail(where, "its URI " + in_quotes(uri) + " is malformed", kKeepInside);
@@ -181,9 +169,7 @@ std::optional<Bytes> read_uri(Resources& resources, std::string_view uri, const 
 void load_buffers(const nlohmann::json& root, const Container& container, Resources& resources,
                   Report& report) {
     const auto buffers = root.find("buffers");
-    if (buffers == root.end()) {
-        return;
-    }
+    if (buffers == root.end()) return;
     for (std::size_t i = 0; i < buffers->size(); ++i) {
         const Json& buffer = (*buffers)[i];
         const std::string where = "buffer " + std::to_string(i);

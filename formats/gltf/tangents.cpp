@@ -12,9 +12,7 @@ namespace {
 /// `v` without its part along `normal`, unit; zero where nothing is left.
 glm::dvec3 unit_in_plane(glm::dvec3 v, glm::dvec3 normal) {
     const double size = glm::length(v);
-    if (!(size > 0) || !std::isfinite(size)) {
-        return glm::dvec3(0.0);
-    }
+    if (!(size > 0) || !std::isfinite(size)) return glm::dvec3(0.0);
     const glm::dvec3 flat = v / size - glm::dot(v / size, normal) * normal;
     const double left = glm::length(flat);
     return left > 1e-6 ? flat / left : glm::dvec3(0.0);
@@ -41,9 +39,7 @@ void vote(const Primitive& p, const std::uint32_t* corner, std::vector<Votes>& v
     const glm::dvec3 e1 = at[1] - at[0], e2 = at[2] - at[0];
     const glm::dvec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
     const double area = d1.x * d2.y - d2.x * d1.y;
-    if (area == 0) {
-        return;
-    }
+    if (area == 0) return;
     const double turn = area < 0 ? -1 : 1;  // dP/du and dP/dv but for a positive factor
     const glm::dvec3 along_u = turn * (d2.y * e1 - d1.y * e2);
     const glm::dvec3 along_v = turn * (d1.x * e2 - d2.x * e1);
@@ -85,17 +81,13 @@ void complete_tangents(Primitive& primitive) {
         tangent = with_sign(unit_in_plane(glm::vec3(tangent), primitive.normal[v]), tangent.w);
         is_complete = is_complete && tangent.w != 0;
     }
-    if (is_complete) {
-        return;
-    }
+    if (is_complete) return;
     std::vector<Votes> votes(primitive.position.size());
     for (std::size_t i = 0; i + 2 < primitive.index.size(); i += 3) {
         vote(primitive, &primitive.index[i], votes);
     }
     for (std::size_t v = 0; v < votes.size(); ++v) {
-        if (primitive.tangent[v].w != 0) {
-            continue;
-        }
+        if (primitive.tangent[v].w != 0) continue;
         const std::size_t side = votes[v].angle[1] > votes[v].angle[0] ? 1 : 0;
         primitive.tangent[v] = with_sign(
             unit_in_plane(votes[v].direction[side], primitive.normal[v]), side == 0 ? 1.0f : -1.0f);

@@ -96,9 +96,7 @@ void validate_accessor(const Document& document, std::size_t index, Report& repo
                               number(kMaxImplicitElements),
                           "store the elements in a buffer");
     }
-    if (!accessor.sparse) {
-        return;
-    }
+    if (!accessor.sparse) return;
     const Sparse& sparse = *accessor.sparse;
     const bool whole = sparse.index_type == ComponentType::uint8 ||
                        sparse.index_type == ComponentType::uint16 ||
@@ -182,9 +180,7 @@ void validate_skins(const Document& document, Report& report) {
         }
         const std::uint32_t bind = skin.inverse_bind_matrices;
         check_link(bind, document.accessors.size(), where, "accessor", report);
-        if (bind >= document.accessors.size()) {
-            continue;
-        }
+        if (bind >= document.accessors.size()) continue;
         const Accessor& accessor = document.accessors[bind];
         if (!accessor.is_matrix || accessor.components != 16 ||
             accessor.type != ComponentType::float32) {
@@ -234,9 +230,7 @@ void validate_nodes(const Document& document, Report& report) {
     if (document.default_scene != kNone) {
         check_link(document.default_scene, document.scenes.size(), "scene", "scene", report);
     }
-    if (!sound) {
-        return;
-    }
+    if (!sound) return;
     std::vector<bool> reached(count, false);
     std::vector<std::uint32_t> pending;
     for (std::uint32_t i = 0; i < count; ++i) {

@@ -176,18 +176,14 @@ SceneCounts count_instances(const Document& document, const std::vector<MeshInst
         for (const MeshPrimitive& primitive :
              document.meshes[document.nodes[instance.node].mesh].primitives) {
             const auto position = primitive.attributes.find("POSITION");
-            if (position == primitive.attributes.end()) {
-                continue;
-            }
+            if (position == primitive.attributes.end()) continue;
             const std::uint64_t count = document.accessors[position->second].count;
             const std::uint64_t drawn =
                 primitive.indices == kNone ? count : document.accessors[primitive.indices].count;
             counts.vertices += count;
             counts.indices += primitive.mode == Mode::triangles ? drawn : 3 * drawn;
             ++counts.primitives;
-            if (is_past_limits(counts)) {
-                return counts;
-            }
+            if (is_past_limits(counts)) return counts;
         }
     }
     return counts;

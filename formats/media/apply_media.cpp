@@ -144,9 +144,7 @@ Result<std::vector<Diagnostic>> apply_media(const MediaFile& media, Scene& scene
         found = found == by_name.end() ? by_name.find("*") : found;
         return found == by_name.end() ? nullptr : found->second;
     };
-    if (auto error = find_unmapped(media.file, scene, entry_of)) {
-        return std::move(*error);
-    }
+    if (auto error = find_unmapped(media.file, scene, entry_of)) return std::move(*error);
     KnownImages known;
     for (Material& material : scene.materials) {
         if (const MaterialMedium* entry = entry_of(material)) {

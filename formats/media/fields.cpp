@@ -34,9 +34,7 @@ auto take(const Fields& fields, const char* key, const std::string& expected,
           const IsRight& is_right, const Convert& convert)
     -> std::optional<std::decay_t<decltype(convert(Json()))>> {
     const Json* value = find(fields, key);
-    if (!value) {
-        return std::nullopt;
-    }
+    if (!value) return std::nullopt;
     if (!is_right(*value)) {
         return fields.report.fail(place(fields.where, key),
                                   "it is " + shown(*value) + ", expected " + expected,

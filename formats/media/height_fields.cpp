@@ -128,9 +128,7 @@ std::vector<float> make_height_field(const HeightFieldShape& shape, std::array<d
     const std::uint32_t side = shape.resolution;
     const std::size_t texels = std::size_t{side} * side;
     const std::size_t empty = count_empty(shape);
-    if (empty == texels) {
-        return std::vector<float>(texels * shape.frames, 0.0f);
-    }
+    if (empty == texels) return std::vector<float>(texels * shape.frames, 0.0f);
     constexpr int kTexels = 3;  // that show a dome or a ripple
     Lattice cells{count_of(size[0], shape.scale), count_of(size[1], shape.scale),
                   static_cast<int>(side / kTexels), shape.frames > 1};

@@ -59,9 +59,7 @@ Result<VdbGrid> read_density(const VolumeEntry& entry, const std::filesystem::pa
         names.push_back(entry.density);
     }
     auto grids = read_vdb(file, names, reader, &unread);
-    if (!grids) {
-        return std::move(grids).error();
-    }
+    if (!grids) return std::move(grids).error();
     if (grids->front().is_color) {
         return make_error(ErrorKind::bad_input, file.string(), in_quotes(entry.density),
                           "it holds colours, not a density", "name a grid of one float a voxel");
@@ -83,9 +81,7 @@ Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path
                            double metres_per_unit, const VdbReadOptions& reader,
                            std::vector<Diagnostic>& warnings) {
     auto read = read_density(entry, file, reader, warnings);
-    if (!read) {
-        return std::move(read).error();
-    }
+    if (!read) return std::move(read).error();
     warn_of_repairs(file, *read, warnings);
     Volume volume;
     volume.name = "volume " + in_quotes(file.filename().string());
@@ -172,9 +168,7 @@ Result<Volume> load_body(const MediaFile& media, const VolumeEntry& entry, const
                           "it names the same material as " + first->where, "keep one of them");
     }
     auto filled = fill_body(scene, entry.material, entry.voxels, media.file, entry.where);
-    if (!filled) {
-        return std::move(filled).error();
-    }
+    if (!filled) return std::move(filled).error();
     std::ranges::move(filled->warnings, std::back_inserter(warnings));
     Volume volume = std::move(filled->volume);
     volume.paper = entry.paper;
@@ -192,9 +186,7 @@ Result<LoadedVolumes> load_all(const MediaFile& media, const std::vector<VolumeE
                           ? load_volume(entry, entry.file.empty() ? own : entry.file,
                                         metres_per_unit, reader, loaded.warnings)
                           : load_body(media, entry, scene, loaded.warnings);
-        if (!volume) {
-            return std::move(volume).error();
-        }
+        if (!volume) return std::move(volume).error();
         std::optional<Volume> absorber = split_absorption(*volume);
         loaded.volumes.push_back(std::move(*volume));
         if (absorber) {
@@ -215,9 +207,7 @@ Error too_many(const std::string& file) {
 
 Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metres_per_unit,
                                              Scene& scene, const VdbReadOptions& reader) {
-    if (scene.volumes.size() + media.volumes.size() > kMaxVolumes) {
-        return too_many(media.file);
-    }
+    if (scene.volumes.size() + media.volumes.size() > kMaxVolumes) return too_many(media.file);
     for (const VolumeEntry& entry : media.volumes) {
         if (entry.file.empty() && entry.material.empty()) {
             return make_error(ErrorKind::bad_input, media.file, entry.where, "it names no file",
@@ -225,12 +215,8 @@ Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metr
         }
     }
     auto loaded = load_all(media, media.volumes, {}, metres_per_unit, scene, reader);
-    if (!loaded) {
-        return std::move(loaded).error();
-    }
-    if (scene.volumes.size() + loaded->volumes.size() > kMaxVolumes) {
-        return too_many(media.file);
-    }
+    if (!loaded) return std::move(loaded).error();
+    if (scene.volumes.size() + loaded->volumes.size() > kMaxVolumes) return too_many(media.file);
     const bool is_bare = scene.primitives.empty() && scene.volumes.empty();
     if (is_bare && !loaded->volumes.empty()) {
         scene.origin = choose_origin(loaded->volumes);
@@ -265,15 +251,11 @@ Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaF
             "albedo of 0.99 and an isotropic phase function",
             "give --media with {\"volumes\": [{\"sigma_t\": [...], \"unit\": \"1/m\"}]}"));
     }
-    if (entries.size() > kMaxVolumes) {
-        return too_many(media.file);
-    }
+    if (entries.size() > kMaxVolumes) return too_many(media.file);
     Scene& scene = imported.scene;
     try {
         auto bytes = gltf::read_whole_file(path, "", report);
-        if (!bytes) {
-            return report.take_error();
-        }
+        if (!bytes) return report.take_error();
         gltf::Sha256 hash;
         hash.add(*bytes);
         scene.sha256 = hash.finish();
@@ -281,12 +263,8 @@ Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaF
         return report.take_exception("make it smaller", "");
     }
     auto loaded = load_all(media, entries, path, metres_per_unit, scene, reader);
-    if (!loaded) {
-        return std::move(loaded).error();
-    }
-    if (loaded->volumes.size() > kMaxVolumes) {
-        return too_many(media.file);
-    }
+    if (!loaded) return std::move(loaded).error();
+    if (loaded->volumes.size() > kMaxVolumes) return too_many(media.file);
     scene.source = path.string();
     scene.inputs = {path};
     scene.materials.resize(1);

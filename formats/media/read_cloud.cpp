@@ -65,13 +65,9 @@ void read_ground(const Fields& fields, gltf::Resources& resources, CloudLayer& l
     const Rgb albedo = rgb(fields, "ground_albedo", 0, 1)
                            .value_or(Rgb{kDefaultAlbedo, kDefaultAlbedo, kDefaultAlbedo});
     layer.ground_albedo = {{code_of(albedo.r), code_of(albedo.g), code_of(albedo.b), 255}};
-    if (!has(fields, "ground")) {
-        return;
-    }
+    if (!has(fields, "ground")) return;
     const auto bytes = read_named_file(fields, "ground", resources);
-    if (!bytes) {
-        return;
-    }
+    if (!bytes) return;
     const gltf::DecodedImage8 decoded = gltf::decode_image8(*bytes);
     const Image8& image = decoded.image;
     const bool is_large = std::max(image.width, image.height) > kMaxFieldSide;
@@ -113,9 +109,7 @@ std::optional<CloudEntry> read_cloud(const nlohmann::json& entry, std::size_t in
     read_place(fields, cloud.layer);
     read_thickness(fields, resources, cloud);
     read_ground(fields, resources, cloud.layer);
-    if (report.failed()) {
-        return std::nullopt;
-    }
+    if (report.failed()) return std::nullopt;
     cloud.layer.name =
         "layer " + std::to_string(index + 1) + " (" + describe_thickness(fields) + ")";
     return cloud;

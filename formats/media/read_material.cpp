@@ -27,9 +27,7 @@ std::optional<Sheet> read_sheet(const Fields& material) {
     const char* const example =
         "give an object such as {\"reflect\": [0.1, 0.2, 0.05], \"transmit\": [0.2, 0.4, 0.05]}";
     const auto found = object_in(material, "thin_walled", example);
-    if (!found) {
-        return std::nullopt;
-    }
+    if (!found) return std::nullopt;
     const Fields& fields = *found;
     refuse_unknown_keys(fields, {"reflect", "transmit"});
     if (!has(fields, "reflect") && !has(fields, "transmit")) {
@@ -65,9 +63,7 @@ const std::vector<Rgb>& default_colors() {
 // if it is absent or faulty; then the report has the fault.
 std::optional<PlacedMarble> read_marble(const Fields& material) {
     const auto found = object_in(material, "marble", "give an object such as {\"scale\": 0.04}");
-    if (!found) {
-        return std::nullopt;
-    }
+    if (!found) return std::nullopt;
     const Fields& fields = *found;
     refuse_unknown_keys(fields, {"scale", "colors", "inside"});
     PlacedMarble placed;
@@ -87,9 +83,7 @@ bool is_black(Rgb c) {
 std::optional<Image8> read_image(const Fields& fields, const char* key,
                                  gltf::Resources& resources) {
     const auto bytes = read_named_file(fields, key, resources);
-    if (!bytes) {
-        return std::nullopt;
-    }
+    if (!bytes) return std::nullopt;
     gltf::DecodedImage8 decoded = gltf::decode_image8(*bytes);
     if (!decoded.fault.empty()) {
         return fields.report.fail(place(fields.where, key), decoded.fault,
@@ -101,9 +95,7 @@ std::optional<Image8> read_image(const Fields& fields, const char* key,
 /// Each key of `others` beside `key` contradicts it.
 void refuse_beside(const Fields& fields, const char* key, std::initializer_list<const char*> others,
                    const char* remedy) {
-    if (!has(fields, key)) {
-        return;
-    }
+    if (!has(fields, key)) return;
     for (const char* other : others) {
         if (has(fields, other)) {
             fields.report.error(place(fields.where, other),
@@ -124,9 +116,7 @@ bool read_coefficients(const Fields& fields, Medium& medium) {
                          "known are: " + listed(media_preset_names()));
         }
     }
-    if (has(fields, "preset")) {
-        return true;
-    }
+    if (has(fields, "preset")) return true;
     const bool reduced = has(fields, "sigma_s_prime");
     if (!reduced && !has(fields, "sigma_s")) {
         report.error(fields.where, "it has no scattering coefficient",
@@ -179,9 +169,7 @@ void refuse_veins_inside(const Fields& fields, const std::optional<PlacedMarble>
 /// What makes a medium differ from point to point, of which there is some.
 void vary(const Fields& fields, const std::optional<PlacedMarble>& marble, Medium& medium) {
     const bool is_veined = marble && marble->is_inside;
-    if (!is_veined && !has(fields, "scatter_texture") && !has(fields, "density_texture")) {
-        return;
-    }
+    if (!is_veined && !has(fields, "scatter_texture") && !has(fields, "density_texture")) return;
     for (const char* key : {"thickness", "profile", "fidelity"}) {
         if (has(fields, key)) {
             fields.report.error(place(fields.where, key),

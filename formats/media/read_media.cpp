@@ -44,9 +44,7 @@ Json::parser_callback_t refuse_twice(std::vector<std::set<std::string>>& open, R
 }
 
 std::optional<Json> parse_strict(std::string_view text, Report& report) {
-    if (!gltf::within_json_bounds(text, report)) {
-        return std::nullopt;
-    }
+    if (!gltf::within_json_bounds(text, report)) return std::nullopt;
     std::vector<std::set<std::string>> open;
     try {
         Json root = Json::parse(text, refuse_twice(open, report));
@@ -69,9 +67,7 @@ template <class Read>
 void read_list(const Json& root, const std::string& where, const List& list, Report& report,
                const Read& read) {
     const auto found = root.find(list.key);
-    if (found == root.end()) {
-        return;
-    }
+    if (found == root.end()) return;
     const std::string at = media::place(where, list.key);
     if (!found->is_array()) {
         report.error(at, "it is not an array", list.example);
@@ -155,9 +151,7 @@ Result<MediaFile> guarded(const std::filesystem::path& path,
         resources.folder = path.parent_path();
         resources.allowed.assign(allowed_folders.begin(), allowed_folders.end());
         read(resources, media, report);
-        if (report.failed()) {
-            return report.take_error();
-        }
+        if (report.failed()) return report.take_error();
         media.inputs = std::move(resources.inputs);
         media.sha256 = resources.hash.finish();
         return media;
@@ -173,9 +167,7 @@ Result<MediaFile> read_media(const std::filesystem::path& path,
     return guarded(
         path, allowed_folders, [&](Resources& resources, MediaFile& media, Report& report) {
             auto bytes = gltf::read_whole_file(path, "", report);
-            if (!bytes) {
-                return;
-            }
+            if (!bytes) return;
             resources.inputs.push_back(path);
             const gltf::Bytes kept = resources.keep(std::move(*bytes));
             resources.hash.add(kept);

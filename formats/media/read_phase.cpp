@@ -67,9 +67,7 @@ std::optional<std::vector<Row>> read_rows(std::string_view text, const std::stri
         text.remove_prefix(std::min(end + 1, text.size()));
         ++number;
         const auto words = split(line.substr(0, line.find('#')));
-        if (words.empty()) {
-            continue;
-        }
+        if (words.empty()) continue;
         const auto row = read_row(words);
         const std::string at = where + " > line " + std::to_string(number);
         if (!row && may_be_heading && !finite(words[0])) {
@@ -100,9 +98,7 @@ std::optional<std::vector<Row>> read_rows(std::string_view text, const std::stri
 std::optional<PhaseFunction> parse_phase_table(std::string_view text, const std::string& where,
                                                Report& report) {
     auto rows = read_rows(text, where, report);
-    if (!rows) {
-        return std::nullopt;
-    }
+    if (!rows) return std::nullopt;
     constexpr double kRounding = 1e-6;  // of an end written with few digits
     if (rows->size() < 2 || std::abs(rows->front().cosine + 1) > kRounding ||
         std::abs(rows->back().cosine - 1) > kRounding) {
@@ -141,9 +137,7 @@ std::optional<PhaseFunction> read_phase(const Fields& fields, gltf::Resources& r
                                   "give isotropic, hg, rayleigh, gaussian or table");
     }
     const auto type = choice(fields, "type", {"isotropic", "hg", "rayleigh", "gaussian", "table"});
-    if (!type) {
-        return std::nullopt;
-    }
+    if (!type) return std::nullopt;
     const auto needs = [&](const char* key, const char* remedy) {
         if (!has(fields, key)) {
             fields.report.error(fields.where, std::string(key) + " is missing", remedy);
@@ -167,9 +161,7 @@ std::optional<PhaseFunction> read_phase(const Fields& fields, gltf::Resources& r
             refuse_unknown_keys(fields, {"type", "file"});
             needs("file", "give the name of a table beside this file");
             const auto bytes = read_named_file(fields, "file", resources);
-            if (!bytes) {
-                return std::nullopt;
-            }
+            if (!bytes) return std::nullopt;
             const std::string_view table(reinterpret_cast<const char*>(bytes->data()),
                                          bytes->size());
             return parse_phase_table(table, place(fields.where, "file"), fields.report);

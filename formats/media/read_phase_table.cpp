@@ -15,14 +15,10 @@ Result<PhaseFunction> read_phase_table(const std::filesystem::path& path) {
     report.file = path.string();
     try {
         const auto bytes = gltf::read_whole_file(path, "", report);
-        if (!bytes) {
-            return report.take_error();
-        }
+        if (!bytes) return report.take_error();
         const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
         auto phase = media::parse_phase_table(text, "table", report);
-        if (!phase) {
-            return report.take_error();
-        }
+        if (!phase) return report.take_error();
         return std::move(*phase);
     } catch (const std::bad_alloc&) {
         return report.take_exception("make it smaller", "");

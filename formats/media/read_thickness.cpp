@@ -45,9 +45,7 @@ std::optional<ScalarImage> read_picture(const std::string& name, const std::stri
                                         double metres, gltf::Resources& resources,
                                         gltf::Report& report) {
     const auto bytes = gltf::read_inside(resources, name, where, report);
-    if (!bytes) {
-        return std::nullopt;
-    }
+    if (!bytes) return std::nullopt;
     auto image = decode_exr_channel(*bytes, where, {"Y", "R"}, kMaxFieldSide);
     if (!image) {
         const Diagnostic& fault = image.error().diagnostics.front();
@@ -56,9 +54,7 @@ std::optional<ScalarImage> read_picture(const std::string& name, const std::stri
     if (std::min(image->width, image->height) < kMinFieldSide) {
         return report.fail(where, "it has only one texel on a side", "give 2 or more");
     }
-    if (!scale_thickness(report, where, *image, metres)) {
-        return std::nullopt;
-    }
+    if (!scale_thickness(report, where, *image, metres)) return std::nullopt;
     return std::move(*image);
 }
 
@@ -112,18 +108,14 @@ void read_frame_times(const Fields& fields, CloudLayer& layer) {
 void read_height_field(const Fields& fields, gltf::Resources& resources, CloudLayer& layer) {
     const auto names = texts(fields, "height_field", kMaxFieldFrames);
     const auto metres = number(fields, "thickness", kMinLayerThickness, kMaxLayerThickness);
-    if (!names || (has(fields, "thickness") && !metres)) {
-        return;
-    }
+    if (!names || (has(fields, "thickness") && !metres)) return;
     const bool is_list = fields.object.at("height_field").is_array();
     for (std::size_t i = 0; i < names->size(); ++i) {
         const std::string key = place(fields.where, "height_field");
         const std::string where = is_list ? place(key, std::to_string(i)) : key;
         const auto image =
             read_picture((*names)[i], where, metres.value_or(1), resources, fields.report);
-        if (!image || !fits(fields.report, where, *image, names->size(), layer)) {
-            return;
-        }
+        if (!image || !fits(fields.report, where, *image, names->size(), layer)) return;
         layer.columns = image->width;
         layer.rows = image->height;
         layer.thickness.reserve(names->size() * image->value.size());
@@ -224,12 +216,8 @@ std::string describe_thickness(const Fields& fields) {
         return formula->at("type").get<std::string>();
     }
     const auto file = fields.object.find("height_field");
-    if (file == fields.object.end()) {
-        return "even";
-    }
-    if (file->is_string()) {
-        return place("", file->get<std::string>());
-    }
+    if (file == fields.object.end()) return "even";
+    if (file->is_string()) return place("", file->get<std::string>());
     const std::string first = place("", file->front().get<std::string>());
     return file->size() == 1 ? first : first + " and " + std::to_string(file->size() - 1) + " more";
 }

@@ -16,9 +16,7 @@ using Json = nlohmann::json;
 /// Sixteen numbers, column by column as in glTF, that keep volumes volumes.
 std::optional<glm::dmat4> read_transform(const Fields& fields) {
     const auto found = fields.object.find("transform");
-    if (found == fields.object.end()) {
-        return glm::dmat4(1);
-    }
+    if (found == fields.object.end()) return glm::dmat4(1);
     const std::string where = place(fields.where, "transform");
     const char* const example =
         "give 16 numbers, column by column, of an affine transform as glTF's `matrix` has them";
@@ -89,9 +87,7 @@ std::optional<VolumeEntry> read_volume(const Json& entry, const std::string& whe
             "\"unit\": \"1/m\"}");
     }
     const Fields fields{entry, where, report};
-    if (has(fields, "material")) {
-        return read_body(fields);
-    }
+    if (has(fields, "material")) return read_body(fields);
     refuse_unknown_keys(
         fields, {"file", "density", "sigma_t", "albedo", "unit", "scale", "phase", "transform",
                  "emission", "temperature", "emission_scale", "temperature_scale", "fidelity"});

@@ -39,9 +39,7 @@ struct Resampler {
                    SparseGrid<float>::kEmpty;
     }
     glm::vec3 at(glm::ivec3 voxel) const {
-        if (is_same) {
-            return grid.is_color ? grid.color.at(voxel) : glm::vec3(grid.scalar.at(voxel));
-        }
+        if (is_same) return grid.is_color ? grid.color.at(voxel) : glm::vec3(grid.scalar.at(voxel));
         const glm::vec3 place(to_own * glm::vec4(glm::vec3(voxel), 1));
         return grid.is_color ? grid.color.sample(place) : glm::vec3(grid.scalar.sample(place));
     }

@@ -51,9 +51,7 @@ int open_unnamed(const std::filesystem::path& folder) {
 bool is_abandoned(const std::filesystem::path& path) {
     constexpr std::time_t kLongEnough = 60;  // s; younger ones may not be locked yet
     const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
-    if (descriptor < 0) {
-        return false;
-    }
+    if (descriptor < 0) return false;
     struct stat info {};
     const bool is_old = ::fstat(descriptor, &info) == 0 && S_ISREG(info.st_mode) &&
                         std::time(nullptr) - info.st_mtime > kLongEnough;
@@ -102,12 +100,8 @@ std::string link_beside(int descriptor, const std::filesystem::path& folder) {
         std::string digits = std::to_string((start + i) % kTries);
         digits.insert(0, kPattern.size() - digits.size(), '0');
         std::string path = (folder / (std::string(kPrefix) + digits)).string();
-        if (link_unnamed(descriptor, path)) {
-            return path;
-        }
-        if (errno != EEXIST) {
-            break;
-        }
+        if (link_unnamed(descriptor, path)) return path;
+        if (errno != EEXIST) break;
     }
     return {};
 }
@@ -120,9 +114,7 @@ std::filesystem::path resolve_links(const std::filesystem::path& path) {
     std::filesystem::path at = std::filesystem::absolute(path, error);
     for (int i = 0; i < kMostLinks && std::filesystem::is_symlink(at, error); ++i) {
         const std::filesystem::path next = std::filesystem::read_symlink(at, error);
-        if (error) {
-            break;
-        }
+        if (error) break;
         at = at.parent_path() / next;
     }
     const std::filesystem::path resolved = std::filesystem::weakly_canonical(at, error);
@@ -138,18 +130,14 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& target, Tempo
     }
     struct stat info {};
     const bool exists = ::stat(target.c_str(), &info) == 0;
-    if (!exists && errno == ENAMETOOLONG) {
-        return io_error(target, "cannot create", errno);
-    }
+    if (!exists && errno == ENAMETOOLONG) return io_error(target, "cannot create", errno);
     if (exists && S_ISDIR(info.st_mode)) {
         return make_error(ErrorKind::resource, target.string(), "", "is a folder",
                           "give a file name inside it");
     }
     if (exists && (!S_ISREG(info.st_mode) || names_a_descriptor(target))) {
         file.descriptor_ = ::open(target.c_str(), O_WRONLY | O_CLOEXEC);
-        if (file.descriptor_ < 0) {
-            return io_error(target, "cannot write", errno);
-        }
+        if (file.descriptor_ < 0) return io_error(target, "cannot write", errno);
         return file;
     }
     file.destination_ = resolve_links(target);
@@ -157,9 +145,7 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& target, Tempo
     file.descriptor_ = temporary == Temporary::unnamed ? open_unnamed(folder) : -1;
     if (file.descriptor_ < 0) {
         file.temporary_ = create_named(folder, file.descriptor_);
-        if (file.temporary_.empty()) {
-            return io_error(target, "cannot create", errno);
-        }
+        if (file.temporary_.empty()) return io_error(target, "cannot create", errno);
     }
     // The permissions of the file that is replaced, or those that an ordinary new file gets.
     const mode_t mask = ::umask(0);
@@ -205,12 +191,8 @@ void AtomicFile::discard() noexcept {
 Status AtomicFile::write(std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
         const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) {
-            continue;
-        }
-        if (written < 0) {
-            return io_error(target_, "cannot write", errno);
-        }
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return io_error(target_, "cannot write", errno);
         written_ += static_cast<std::uint64_t>(written);
         bytes = bytes.subspan(static_cast<std::size_t>(written));
     }
@@ -230,20 +212,14 @@ Status AtomicFile::sync() {
 }
 
 Status AtomicFile::publish() {
-    if (destination_.empty()) {
-        return ok_status();
-    }
+    if (destination_.empty()) return ok_status();
     if (temporary_.empty()) {
-        if (link_unnamed(descriptor_, destination_.string())) {
-            return ok_status();
-        }
+        if (link_unnamed(descriptor_, destination_.string())) return ok_status();
         // A link cannot replace a file: a name beside it, and a rename at once.
         if (errno == EEXIST) {
             temporary_ = link_beside(descriptor_, destination_.parent_path());
         }
-        if (temporary_.empty()) {
-            return io_error(target_, "cannot name the finished file", errno);
-        }
+        if (temporary_.empty()) return io_error(target_, "cannot name the finished file", errno);
     }
     if (::rename(temporary_.c_str(), destination_.c_str()) != 0) {
         return io_error(target_, "cannot rename the finished file", errno);
@@ -253,12 +229,8 @@ Status AtomicFile::publish() {
 }
 
 Status AtomicFile::commit() {
-    if (Status status = sync(); !status) {
-        return status;
-    }
-    if (Status status = publish(); !status) {
-        return status;
-    }
+    if (Status status = sync(); !status) return status;
+    if (Status status = publish(); !status) return status;
     if (::close(std::exchange(descriptor_, -1)) != 0) {
         return io_error(target_, "cannot write", errno);
     }
@@ -267,12 +239,8 @@ Status AtomicFile::commit() {
 
 Status write_file_atomically(const std::filesystem::path& target, std::string_view bytes) {
     Result<AtomicFile> file = AtomicFile::create(target);
-    if (!file) {
-        return std::move(file).error();
-    }
-    if (Status status = file->write(bytes); !status) {
-        return status;
-    }
+    if (!file) return std::move(file).error();
+    if (Status status = file->write(bytes); !status) return status;
     return file->commit();
 }
 

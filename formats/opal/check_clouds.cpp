@@ -52,9 +52,7 @@ std::string find_place_fault(const LayerRecord& layer) {
     }
     constexpr std::uint32_t kKnown =
         LayerRecord::kRepeat | LayerRecord::kRadiosity | LayerRecord::kLoop | LayerRecord::kPaper;
-    if ((layer.flags & ~kKnown) != 0) {
-        return "it has flags that only later versions know";
-    }
+    if ((layer.flags & ~kKnown) != 0) return "it has flags that only later versions know";
     return {};
 }
 
@@ -92,9 +90,7 @@ std::string find_band_fault(const LayerRecord& layer) {
             return "a mean cosine of " + number_in_fault(band.g) +
                    " is not in -1 ... 1 (exclusive)";
         }
-        if (band.reserved != 0) {
-            return "a band has a value that only later versions know";
-        }
+        if (band.reserved != 0) return "a band has a value that only later versions know";
     }
     return {};
 }
@@ -179,9 +175,7 @@ std::string find_table_fault(const LayerTables& tables) {
     if (!all_within(tables.log_phase, kMinLogPhase, kMaxLogPhase)) {
         return "the logarithm of its phase function is not in -100 ... 40";
     }
-    if (!all_within(tables.glow, 0, kMaxLayerValue)) {
-        return "its glow is below zero or not finite";
-    }
+    if (!all_within(tables.glow, 0, kMaxLayerValue)) return "its glow is below zero or not finite";
     constexpr float kRounding = 1e-3f;  // of shares that are sums over directions
     for (const auto shares : {tables.t1, tables.t_ms, tables.r1, tables.mean_t}) {
         if (!all_within(shares, -kRounding, 1 + kRounding)) {

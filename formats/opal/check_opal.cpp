@@ -158,9 +158,7 @@ std::string find_gloss_record_fault(const AssetView& asset, std::size_t i) {
     const GlossRecord& g = asset.gloss[i];
     const auto share = [](float x) { return x >= 0.0f && x <= 1.0f; };
     if (g.roughness == kNotGlossy) return {};
-    if (!asset.primitives[i].is_opaque()) {
-        return "it is not opaque: its roughness must be -1";
-    }
+    if (!asset.primitives[i].is_opaque()) return "it is not opaque: its roughness must be -1";
     if (!share(g.roughness) || !share(g.metallic) || !share(g.f90) || !share(g.f0.r) ||
         !share(g.f0.g) || !share(g.f0.b)) {
         return "a roughness, metallic factor or reflectance is not in 0 ... 1";

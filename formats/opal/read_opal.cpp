@@ -44,9 +44,7 @@ bool read_mesh(SectionCursor cursor, AssetView& view) {
 bool read_images(SectionCursor cursor, AssetView& view) {
     ImagesHead head;
     std::span<const ImageSize> sizes;
-    if (!cursor.take_one(head) || !cursor.take(head.count, sizes)) {
-        return false;
-    }
+    if (!cursor.take_one(head) || !cursor.take(head.count, sizes)) return false;
     for (const ImageSize size : sizes) {
         PreviewImage image{size.width, size.height, {}};
         // Below 2^16 a side the product of three cannot overflow 64 bits.
@@ -142,9 +140,7 @@ DecodedBytes::~DecodedBytes() {
 Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::string& file,
                               Checks checks, const Memory& memory) {
     Result<std::vector<SectionEntry>> table = read_section_table(bytes, file);
-    if (!table) {
-        return std::move(table).error();
-    }
+    if (!table) return std::move(table).error();
     const auto damaged = [&](std::string where, std::string fault) {
         return make_error(ErrorKind::bad_input, file, std::move(where), std::move(fault),
                           "the file is damaged: bake it again, or copy it again");
@@ -189,9 +185,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
             const std::size_t size =
                 ZSTD_decompress(decoded.data(), static_cast<std::size_t>(entry.size),
                                 content.data(), content.size());
-            if (size != entry.size) {
-                return damaged(where, "its compressed data cannot be decoded");
-            }
+            if (size != entry.size) return damaged(where, "its compressed data cannot be decoded");
             content = {decoded.data(), static_cast<std::size_t>(entry.size)};
             loaded.decoded.push_back(std::move(decoded));
         } else if (entry.codec != 0 || entry.size != entry.stored_size) {
@@ -205,9 +199,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         }
         found |= known->bit;
     }
-    if (found != 15) {
-        return damaged("section table", "BASI, PRIM, TRAN and MESH must all be there");
-    }
+    if (found != 15) return damaged("section table", "BASI, PRIM, TRAN and MESH must all be there");
     loaded.view.transport.cubemap_size = loaded.view.cubemap_size;
     loaded.view.volumes.rows.cubemap_size = loaded.view.cubemap_size;
     if (checks == Checks::sizes) {

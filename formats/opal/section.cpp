@@ -91,18 +91,14 @@ Result<std::vector<SectionEntry>> read_section_table(std::span<const std::byte> 
                           "does not begin with the .opal magic bytes",
                           "give a file written by `opaline bake`");
     }
-    if (header.endian_mark != kEndianMark) {
-        return damaged("header", "the byte-order mark is wrong");
-    }
+    if (header.endian_mark != kEndianMark) return damaged("header", "the byte-order mark is wrong");
     if (header.version > kOpalVersion) {
         return make_error(ErrorKind::newer_file, file, "header",
                           "format version " + std::to_string(header.version) +
                               " is newer than this program's " + std::to_string(kOpalVersion),
                           "update Opaline");
     }
-    if (header.version == 0) {
-        return damaged("header", "format version 0 does not exist");
-    }
+    if (header.version == 0) return damaged("header", "format version 0 does not exist");
     if (header.file_size != bytes.size()) {
         return damaged("header", "the file should have " + std::to_string(header.file_size) +
                                      " bytes but has " + std::to_string(bytes.size()));

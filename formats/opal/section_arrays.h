@@ -25,14 +25,10 @@ class SectionCursor {
     /// The next array with its padding; false, and nothing taken, where the section is too short.
     template <class T>
     bool take(std::uint64_t count, std::span<const T>& out) {
-        if (count > rest_.size() / sizeof(T)) {
-            return false;
-        }
+        if (count > rest_.size() / sizeof(T)) return false;
         const std::size_t size = static_cast<std::size_t>(count) * sizeof(T);
         const std::size_t padded = (size + kArrayAlignment - 1) / kArrayAlignment * kArrayAlignment;
-        if (padded > rest_.size()) {
-            return false;
-        }
+        if (padded > rest_.size()) return false;
         out = {reinterpret_cast<const T*>(rest_.data()), static_cast<std::size_t>(count)};
         rest_ = rest_.subspan(padded);
         return true;
@@ -42,9 +38,7 @@ class SectionCursor {
     template <class T>
     bool take_one(T& out) {
         std::span<const T> one;
-        if (!take(1, one)) {
-            return false;
-        }
+        if (!take(1, one)) return false;
         std::memcpy(&out, one.data(), sizeof out);
         return true;
     }

@@ -31,9 +31,7 @@ float code_scale(float largest, std::int32_t limit) {
 }
 
 std::int16_t quantise(float value, float scale, std::int32_t limit) {
-    if (!(scale > 0)) {
-        return 0;
-    }
+    if (!(scale > 0)) return 0;
     const auto code = static_cast<std::int32_t>(std::lround(value / scale));
     return static_cast<std::int16_t>(std::clamp(code, -limit, limit));
 }
@@ -104,9 +102,7 @@ SparseRows make_sparse_rows(std::uint32_t cubemap_size, std::uint32_t code_bits)
 bool append_row(SparseRows& rows, const SparseRow& row) {
     const std::size_t details = row.index.size();
     assert(row.value.size() == details * row.bands && row.average.size() == kCubeFaces * row.bands);
-    if (details > std::numeric_limits<std::uint32_t>::max() - rows.row_offset.back()) {
-        return false;
-    }
+    if (details > std::numeric_limits<std::uint32_t>::max() - rows.row_offset.back()) return false;
     const std::int32_t limit = rows.code_bits == 8 ? kLargestDetail8 : kLargestDetail16;
     const std::span<const float> values(row.value), averages(row.average);
     for (std::uint32_t band = 0; band < row.bands; ++band) {
@@ -144,9 +140,7 @@ std::optional<std::uint32_t> find_faulty_row(const SparseRows& rows, std::uint32
 bool append_rows(SparseRows& rows, const SparseRows& tail) {
     assert(tail.cubemap_size == rows.cubemap_size && tail.code_bits == rows.code_bits);
     const std::uint32_t base = rows.row_offset.back();
-    if (tail.row_offset.back() > std::numeric_limits<std::uint32_t>::max() - base) {
-        return false;
-    }
+    if (tail.row_offset.back() > std::numeric_limits<std::uint32_t>::max() - base) return false;
     for (std::size_t r = 1; r < tail.row_offset.size(); ++r) {
         rows.row_offset.push_back(base + tail.row_offset[r]);
     }

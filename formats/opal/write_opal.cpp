@@ -185,9 +185,7 @@ template <class Write>
 Status write_padded(Write& write, std::uint64_t& position, std::uint64_t target) {
     while (position < target) {
         const std::size_t step = std::min<std::uint64_t>(target - position, kSectionAlignment);
-        if (Status status = write(padding_zeros(step)); !status) {
-            return status;
-        }
+        if (Status status = write(padding_zeros(step)); !status) return status;
         position += step;
     }
     return ok_status();
@@ -213,21 +211,15 @@ Status write_parts(const AssetView& asset, std::span<const float> receiver_error
     header.section_count = static_cast<std::uint32_t>(table.size());
     header.table_checksum = checksum(std::as_bytes(std::span(table)));
 
-    if (Status status = write(bytes_of(header)); !status) {
-        return status;
-    }
-    if (Status status = write(std::as_bytes(std::span(table))); !status) {
-        return status;
-    }
+    if (Status status = write(bytes_of(header)); !status) return status;
+    if (Status status = write(std::as_bytes(std::span(table))); !status) return status;
     std::uint64_t position = sizeof header + table.size() * sizeof(SectionEntry);
     for (const StoredSection& section : sections) {
         if (Status status = write_padded(write, position, section.entry.offset); !status) {
             return status;
         }
         for (const auto part : section.parts) {
-            if (Status status = write(part); !status) {
-                return status;
-            }
+            if (Status status = write(part); !status) return status;
             position += part.size();
         }
     }

@@ -35,9 +35,7 @@ std::string list_grids(const std::vector<ListedGrid>& grids) {
     constexpr std::size_t kEnough = 160;
     std::string list;
     for (const ListedGrid& listed : grids) {
-        if (list.size() > kEnough) {
-            return list + ", ...";
-        }
+        if (list.size() > kEnough) return list + ", ...";
         list += (list.empty() ? "'" : ", '") + listed.name + "' (" + type_of(listed) + ")";
     }
     return list;
@@ -134,14 +132,10 @@ std::optional<Fault> select_grids(const std::vector<ListedGrid>& grids,
             return Fault{"", "has no grid '" + name + "'; it has " + list_grids(grids),
                          "name one of these"};
         }
-        if (std::optional<Fault> fault = check_kind(*found)) {
-            return fault;
-        }
+        if (std::optional<Fault> fault = check_kind(*found)) return fault;
         selected.push_back(found);
     }
-    if (selected.empty() && grids.size() == 1) {
-        return check_kind(grids.front());
-    }
+    if (selected.empty() && grids.size() == 1) return check_kind(grids.front());
     if (selected.empty()) {
         return Fault{"", "has no fog volume of floats; it has " + list_grids(grids),
                      "write a fog volume of floats"};
@@ -188,9 +182,7 @@ std::optional<Fault> decode_vdb(const std::string& path, std::span<const std::st
             return Fault{"", "has no grid", "write a fog volume of floats"};
         }
         std::vector<const ListedGrid*> selected;
-        if (std::optional<Fault> fault = select_grids(file.grids(), names, selected)) {
-            return fault;
-        }
+        if (std::optional<Fault> fault = select_grids(file.grids(), names, selected)) return fault;
         BrickBudget budget{kMaxBricks, kMaxTableBricks};
         std::vector<std::string> unread;
         std::optional<Fault> first_fault;

@@ -112,9 +112,7 @@ GridBase::Ptr GridFile::load_tree(const ListedGrid& listed) {
                                      "' is missing");
         }
     }
-    if (!inputHasGridOffsets()) {
-        return owner->grid;
-    }
+    if (!inputHasGridOffsets()) return owner->grid;
     GridBase::Ptr grid = GridBase::createGrid(owner->descriptor.gridType());
     grid->setSaveFloatAsHalf(owner->descriptor.saveFloatAsHalf());
     owner->descriptor.seekToGrid(stream_);

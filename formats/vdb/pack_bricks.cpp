@@ -97,9 +97,7 @@ class Packer {
         if (fault) fault->is_of_values = true;
         if (!fault) fault = check_places();
         if (!fault) fault = place_table(head, budget);
-        if (fault) {
-            return fault;
-        }
+        if (fault) return fault;
         head.active_voxels = census_.active;
         head.not_a_number = census_.not_a_number;
         head.negative = census_.negative;
@@ -248,9 +246,7 @@ class Packer {
 
     // i: x fastest. A leaf of OpenVDB has z fastest.
     static Value value_at(const Brick& brick, std::size_t i) {
-        if (brick.leaf == nullptr) {
-            return brick.tile;
-        }
+        if (brick.leaf == nullptr) return brick.tile;
         const auto offset = static_cast<openvdb::Index>((i & 7) << 6 | (i & 56) | i >> 6);
         return brick.leaf->isValueOn(offset) ? repaired(brick.leaf->getValue(offset))
                                              : openvdb::zeroVal<Value>();

@@ -55,9 +55,7 @@ Status check_file(const std::filesystem::path& path, const File& file) {
     if (!S_ISREG(info.st_mode)) {
         return bad_file(path, "is not a regular file", "give the path of a file");
     }
-    if (info.st_size == 0) {
-        return bad_file(path, "is empty", "give the path of an OpenVDB file");
-    }
+    if (info.st_size == 0) return bad_file(path, "is empty", "give the path of an OpenVDB file");
     if (static_cast<std::uint64_t>(info.st_size) > kMaxFileBytes) {
         return bad_file(path, "has more than " + std::to_string(kMaxFileBytes >> 30) + " GiB",
                         "write fewer or coarser grids");
@@ -147,31 +145,21 @@ Result<std::vector<VdbGrid>> read_vdb(const std::filesystem::path& file,
                                       std::span<const std::string> names,
                                       const VdbReadOptions& options,
                                       std::vector<std::string>* unread) {
-    if (Status status = check_names(file, names); !status) {
-        return std::move(status).error();
-    }
+    if (Status status = check_names(file, names); !status) return std::move(status).error();
     const File opened(file);
-    if (Status status = check_file(file, opened); !status) {
-        return std::move(status).error();
-    }
+    if (Status status = check_file(file, opened); !status) return std::move(status).error();
     Result<ReaderProcess> reader = ReaderProcess::start(opened.descriptor(), names, options);
-    if (!reader) {
-        return std::move(reader).error();
-    }
+    if (!reader) return std::move(reader).error();
     std::optional<Reply> reply =
         parse_reply([&](std::span<std::byte> out) { return reader->read(out); });
     const bool is_whole = reply.has_value() && reader->is_at_end();
     const Ending ending = reader->finish();
-    if (ending != Ending::done || !is_whole) {
-        return reader_error(file, ending, options);
-    }
+    if (ending != Ending::done || !is_whole) return reader_error(file, ending, options);
     if (reply->fault) {
         return make_error(ErrorKind::bad_input, file.string(), shown(reply->fault->where),
                           shown(reply->fault->fault), shown(reply->fault->remedy));
     }
-    if (!fit_names(reply->grids, names)) {
-        return reader_error(file, Ending::failed, options);
-    }
+    if (!fit_names(reply->grids, names)) return reader_error(file, Ending::failed, options);
     if (unread != nullptr) {
         *unread = std::move(reply->unread);
         for (std::string& name : *unread) {

@@ -116,9 +116,7 @@ Result<ReaderProcess> ReaderProcess::start(int file, std::span<const std::string
         variables.emplace_back(*variable);
     }
     int ends[2];
-    if (::pipe2(ends, O_CLOEXEC) != 0) {
-        return start_error(options, std::strerror(errno));
-    }
+    if (::pipe2(ends, O_CLOEXEC) != 0) return start_error(options, std::strerror(errno));
     ReaderProcess reader(options);
     reader.pipe_ = ends[0];
     int code = 0;
@@ -149,18 +147,12 @@ bool ReaderProcess::wait_for_bytes() {
             std::chrono::duration_cast<milliseconds>(deadline_ - std::chrono::steady_clock::now());
         is_interrupted_ = interrupted_ != nullptr && interrupted_->load();
         is_late_ = left.count() <= 0;
-        if (is_interrupted_ || is_late_) {
-            return false;
-        }
+        if (is_interrupted_ || is_late_) return false;
         pollfd wanted{pipe_, POLLIN, 0};
         const int ready =
             ::poll(&wanted, 1, static_cast<int>(std::min(left, kLookAround).count()) + 1);
-        if (ready > 0) {
-            return true;
-        }
-        if (ready < 0 && errno != EINTR) {
-            return false;
-        }
+        if (ready > 0) return true;
+        if (ready < 0 && errno != EINTR) return false;
     }
 }
 
@@ -172,9 +164,7 @@ bool ReaderProcess::fill_buffer() {
     ssize_t count = -1;
     while (count < 0 && wait_for_bytes()) {
         count = ::read(pipe_, buffer_.data(), buffer_.size());
-        if (count < 0 && errno != EINTR && errno != EAGAIN) {
-            break;
-        }
+        if (count < 0 && errno != EINTR && errno != EAGAIN) break;
     }
     buffer_.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
     return !buffer_.empty();
@@ -182,9 +172,7 @@ bool ReaderProcess::fill_buffer() {
 
 bool ReaderProcess::read(std::span<std::byte> out) {
     while (!out.empty()) {
-        if (used_ == buffer_.size() && !fill_buffer()) {
-            return false;
-        }
+        if (used_ == buffer_.size() && !fill_buffer()) return false;
         const std::size_t count = std::min(out.size(), buffer_.size() - used_);
         std::copy_n(buffer_.begin() + static_cast<std::ptrdiff_t>(used_), count, out.begin());
         used_ += count;
@@ -201,9 +189,7 @@ Ending ReaderProcess::finish() {
     if (pipe_ >= 0) {
         ::close(std::exchange(pipe_, -1));
     }
-    if (process_ < 0) {
-        return Ending::failed;
-    }
+    if (process_ < 0) return Ending::failed;
     // The pipe is closed by a process that has begun to end: its exit code stays what it is.
     ::kill(process_, SIGKILL);
     int status = 0;

@@ -108,9 +108,7 @@ bool read_bricks(const ByteSource& source, const GridHead& head, SparseGrid<T>& 
         least_place = place + 1;
         grid.value.resize(grid.value.size() + kVoxels);
         const std::span<T> values = std::span(grid.value).last(kVoxels);
-        if (!source(std::as_writable_bytes(values)) || !is_usable<T>(values)) {
-            return false;
-        }
+        if (!source(std::as_writable_bytes(values)) || !is_usable<T>(values)) return false;
     }
     return true;
 }
@@ -190,9 +188,7 @@ void ReplyWriter::flush() {
     std::span<const std::byte> rest = buffer_;
     while (!rest.empty()) {
         const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
-        if (written < 0 && errno == EINTR) {
-            continue;
-        }
+        if (written < 0 && errno == EINTR) continue;
         if (written < 0) {
             ::_exit(1);
         }

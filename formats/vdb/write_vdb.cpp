@@ -59,9 +59,7 @@ std::optional<std::string> find_fault(const VdbOutputGrid& output) {
         return "its transform is not affine and invertible";
     }
     const auto [least, most] = std::minmax_element(grid.value.begin(), grid.value.end());
-    if (least == grid.value.end() || !(*most > 0)) {
-        return "it has no value above 0";
-    }
+    if (least == grid.value.end() || !(*most > 0)) return "it has no value above 0";
     if (!std::all_of(grid.value.begin(), grid.value.end(),
                      [](float v) { return std::isfinite(v) && v >= 0; })) {
         return "it has values that are negative or not finite";
@@ -105,9 +103,7 @@ openvdb::math::Transform::Ptr to_transform(const glm::dmat4& matrix) {
             is_diagonal = is_diagonal && (row == column || row == 3 || matrix[row][column] == 0);
         }
     }
-    if (!is_diagonal) {
-        return openvdb::math::Transform::createLinearTransform(rows);
-    }
+    if (!is_diagonal) return openvdb::math::Transform::createLinearTransform(rows);
     for (int axis = 0; axis < 3; ++axis) {
         scale[axis] = matrix[axis][axis];
         translation[axis] = matrix[3][axis];

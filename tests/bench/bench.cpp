@@ -41,9 +41,7 @@ constexpr Entry kEntries[] = {
 
 int main(int count, char** arguments) {
     for (const opaline::tests::Entry& entry : opaline::tests::kEntries) {
-        if (count > 1 && arguments[1] == entry.name) {
-            return entry.run(count - 1, arguments + 1);
-        }
+        if (count > 1 && arguments[1] == entry.name) return entry.run(count - 1, arguments + 1);
     }
     std::fputs("usage: opaline_bench NAME [ARGUMENT...], NAME one of:\n", stderr);
     for (const opaline::tests::Entry& entry : opaline::tests::kEntries) {

@@ -53,9 +53,7 @@ formats::Environment make_gradient() {
 
 void on_cpu(benchmark::State& state) {
     const auto file = open_file(state);
-    if (!file) {
-        return;
-    }
+    if (!file) return;
     const formats::AssetView& asset = file->asset.view;
     const auto light = runtime::project_environment(make_gradient(), asset.cubemap_size);
     std::vector<formats::Rgb> radiance(asset.receivers());
@@ -72,9 +70,7 @@ BENCHMARK(on_cpu)->Arg(1)->Arg(0)->UseRealTime()->Unit(benchmark::kMillisecond);
 
 void on_gl(benchmark::State& state) {
     const auto file = open_file(state);
-    if (!file) {
-        return;
-    }
+    if (!file) return;
     const formats::Environment environment = make_gradient();
     auto renderer = runtime::GlRenderer::create(file->asset.view, environment);
     if (!renderer) {

@@ -118,9 +118,7 @@ bool shows_board(const Bench& bench, std::uint32_t pixel, View view) {
         d = view == View::glass
                 ? glm::refract(d, side * hit->smooth, side > 0 ? 1 / kIndex : kIndex)
                 : glm::reflect(d, hit->smooth);
-        if (d == glm::vec3(0)) {
-            return false;
-        }
+        if (d == glm::vec3(0)) return false;
         from = leave_surface(*hit, d);
     }
     return true;

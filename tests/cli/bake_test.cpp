@@ -174,9 +174,7 @@ TEST(Bake, TargetErrorIsReportedWithWhatThePilotTried) {
 
 double seconds_of(const Json& report, const std::string& name) {
     for (const Json& stage : report.at("stages")) {
-        if (stage.at("name") == name) {
-            return stage.at("seconds");
-        }
+        if (stage.at("name") == name) return stage.at("seconds");
     }
     ADD_FAILURE() << "no stage " << name;
     return 0;

@@ -36,9 +36,7 @@ tests::Scene make_slotted_block(std::size_t& of_slot) {
     };
     for (int x = 0; x < 3; ++x) {
         for (int y = 0; y < 2; ++y) {
-            if (!is_filled(x, y)) {
-                continue;
-            }
+            if (!is_filled(x, y)) continue;
             const auto i = static_cast<std::size_t>(x), j = static_cast<std::size_t>(y);
             const glm::vec3 low{kX[i], kY[j], -kEnd}, across{kX[i + 1] - kX[i], 0, 0},
                 up{0, kY[j + 1] - kY[j], 0};

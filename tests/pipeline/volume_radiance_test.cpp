@@ -81,15 +81,11 @@ std::vector<Group> groups_of(const std::string& name) {
     std::vector<Group> groups;
     for (const tests::VolumeRow& row : tests::read_volume_table()) {
         const std::string& geometry = row.cell.at("geometry");
-        if (row.cell.at("group") != name || (geometry != "sphere" && geometry != "blob")) {
-            continue;
-        }
+        if (row.cell.at("group") != name || (geometry != "sphere" && geometry != "blob")) continue;
         const auto same = [&](const Group& group) {
             for (const char* column : {"geometry", "g", "albedo", "sigma_t", "size", "px", "py",
                                        "pz", "vx", "vy", "vz", "lx", "ly", "lz"}) {
-                if (group.row.cell.at(column) != row.cell.at(column)) {
-                    return false;
-                }
+                if (group.row.cell.at(column) != row.cell.at(column)) return false;
             }
             return true;
         };

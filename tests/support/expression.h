@@ -60,9 +60,7 @@ class Expression {
         return accept('^') ? std::pow(base, power()) : base;
     }
     double atom() {
-        if (accept('-')) {
-            return -power();
-        }
+        if (accept('-')) return -power();
         if (accept('(')) {
             const double value = sum();
             if (!accept(')')) {
@@ -80,9 +78,7 @@ class Expression {
             at_ += used;
             return value;
         }
-        if (const auto it = variables_.find(name); it != variables_.end()) {
-            return it->second;
-        }
+        if (const auto it = variables_.find(name); it != variables_.end()) return it->second;
         const double x = atom();
         if (name == "sin") return std::sin(x);
         if (name == "cos") return std::cos(x);

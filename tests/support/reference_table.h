@@ -49,9 +49,7 @@ inline std::vector<ReferenceRow> read_reference(const std::string& table,
         for (std::string part; std::getline(cells, part, ',');) {
             cell.push_back(part);
         }
-        if (cell.size() < 5 || cell[0] != check) {
-            continue;
-        }
+        if (cell.size() < 5 || cell[0] != check) continue;
         ReferenceRow row{cell[0],           cell[1], {}, std::stod(cell[2]), std::stod(cell[3]),
                          std::stod(cell[4])};
         std::stringstream pairs(cell[1]);

@@ -39,9 +39,7 @@ std::vector<Encoding> list_encodings(const Knobs& knobs) {
 
 bool depends_on_trials(const BakeInputs& bake, const SubjectState& subject) {
     for (std::size_t e = 0; e < subject.effects.size(); ++e) {
-        if (subject.effects[e].acts && !bake.effects.effects[e].pilot.empty()) {
-            return true;
-        }
+        if (subject.effects[e].acts && !bake.effects.effects[e].pilot.empty()) return true;
     }
     return false;
 }

@@ -71,9 +71,7 @@ struct Trials {
             const double square = square_error(measure());
             choice.trials.push_back({std::string(ladder.knob->name), choice.knobs[*ladder.knob],
                                      std::sqrt(square), 16});
-            if (square <= allowed) {
-                return;
-            }
+            if (square <= allowed) return;
         }
         choice.knobs = finest;
         rows.prepare(effect);
@@ -83,9 +81,7 @@ struct Trials {
         const Knobs& knobs = choice.knobs;
         const std::vector<Encoding> encodings = list_encodings(knobs);
         const auto pairs = measure(encodings);
-        if (pilot.context.cancelled()) {
-            return;
-        }
+        if (pilot.context.cancelled()) return;
         const std::size_t lights = pilot.lights.size();
         std::vector<ErrorBounds> errors;
         bool is_sure = false;
@@ -152,9 +148,7 @@ PilotChoice choose_row_knobs(const PilotScene& pilot, std::span<const PilotRecei
     trials.choice.smooth_error = relative_rms(without_suns(pairs, pilot.lights));
     for (std::size_t e = 0; e < effects.size(); ++e) {
         for (const PilotLadder& ladder : effects[e].pilot) {
-            if (!is_tried(pilot, e)) {
-                continue;
-            }
+            if (!is_tried(pilot, e)) continue;
             allowed += ladder.share * trials.target * trials.target;
             if (!knobs.is_given(*ladder.knob)) {
                 trials.climb(e, ladder, allowed);

@@ -11,9 +11,7 @@ constexpr std::uint32_t kLargestCubemap = 128;
 // The knobs with finer samples of all effects that have some; nothing: none can be finer.
 std::optional<Knobs> refine_samples(const EffectTable& effects, const Refinement& refinement,
                                     Knobs knobs) {
-    if (!refinement.more_samples_help || !refinement.base->has_samples) {
-        return std::nullopt;
-    }
+    if (!refinement.more_samples_help || !refinement.base->has_samples) return std::nullopt;
     bool is_finer = false;
     for (const EffectDescriptor& effect : effects.effects) {
         is_finer = (effect.refine_samples != nullptr && effect.refine_samples(knobs)) || is_finer;
@@ -38,9 +36,7 @@ bool learn(Refinement& refinement, const PilotRound& round) {
         if (round.knobs.cubemap_size > base.knobs.cubemap_size) {
             refinement.texel_gain = base.error > 0 ? round.error / base.error : 1.0;
             refinement.more_texels_help = refinement.texel_gain <= kWorthIts;
-            if (!refinement.more_texels_help) {
-                return false;
-            }
+            if (!refinement.more_texels_help) return false;
         } else if (round.smooth_error > kWorthIts * base.smooth_error) {
             refinement.more_samples_help = false;
             return false;
@@ -59,9 +55,7 @@ std::optional<Knobs> next_knobs(const EffectTable& effects, const Refinement& re
     const bool finer_texels =
         refinement.more_texels_help && !knobs.cubemap_given && knobs.cubemap_size < kLargestCubemap;
     const bool is_smooth = refinement.base->smooth_error > 0.5 * knobs.numerical_target();
-    if (finer_samples && (is_smooth || !finer_texels)) {
-        return finer_samples;
-    }
+    if (finer_samples && (is_smooth || !finer_texels)) return finer_samples;
     const bool in_reach =
         refinement.texel_gain == 0 || least_error_of_texels(refinement) <= knobs.numerical_target();
     if (finer_texels && in_reach) {

@@ -68,9 +68,7 @@ std::vector<double> all_luminance(const PointRecord& record) {
 std::optional<LadderFit> fit_ladder(const SweepResult& result, const Ladder& ladder) {
     const auto theory = convergence_theory(ladder, result.mean_cosine);
     const std::vector<Member> members = members_of(result, ladder);
-    if (!theory || members.size() < 3) {
-        return std::nullopt;
-    }
+    if (!theory || members.size() < 3) return std::nullopt;
     const Member& finest = members.back();
     LadderFit fit{ladder, *theory, finest.record->point.label, {}, std::nullopt};
     std::vector<Convergence> fitted;
@@ -259,21 +257,15 @@ double front_cost_at(std::span<const CostPoint> points, double error) {
     const CostPoint* above = nullptr;  // the most accurate one that errs more
     const CostPoint* below = nullptr;  // the least accurate one that does not
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (!front[i] || points[i].error <= 0) {
-            continue;
-        }
+        if (!front[i] || points[i].error <= 0) continue;
         if (points[i].error > error) {
             above = above == nullptr || points[i].error < above->error ? &points[i] : above;
         } else {
             below = below == nullptr || points[i].error > below->error ? &points[i] : below;
         }
     }
-    if (below == nullptr || (above == nullptr && below->error < error)) {
-        return -1;
-    }
-    if (below->error == error) {
-        return below->cost;
-    }
+    if (below == nullptr || (above == nullptr && below->error < error)) return -1;
+    if (below->error == error) return below->cost;
     const double share = std::log(error / above->error) / std::log(below->error / above->error);
     return above->cost * std::pow(below->cost / above->cost, share);
 }

@@ -128,9 +128,7 @@ void add_knob_ladders(Points& points, const Knobs& base) {
             points.add(label_of(*knob, value), ladder_of(*knob), value, knobs);
         }
     }
-    if (!points.subject.in_media) {
-        return;
-    }
+    if (!points.subject.in_media) return;
     for (const bool exact : {false, true}) {
         Knobs knobs = base;
         knobs.exact_rays = exact;
@@ -143,9 +141,7 @@ void add_grid(Points& points, const Knobs& base) {
     for (const std::uint32_t n : {8u, 16u, 32u, 64u}) {
         for (const std::uint32_t m : {16u, 32u, 64u, 128u, 256u, 512u, 1024u}) {
             // Many coefficients with a coarse map, or few with a fine one, are never efficient.
-            if (m > 2 * n * n || 16 * m < n * n) {
-                continue;
-            }
+            if (m > 2 * n * n || 16 * m < n * n) continue;
             Knobs knobs = base;
             knobs.cubemap_size = n;
             knobs.coefficients = m;
@@ -250,14 +246,10 @@ SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& sce
     add_chosen_knobs(effects, volume_plan, subject);
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         const auto decisions = entries_of(plan, m);
-        if (decisions.empty()) {
-            continue;
-        }
+        if (decisions.empty()) continue;
         const RowLayout layout = layout_material(effects, scene.materials[m], decisions, knobs);
         for (const EffectDescriptor& effect : effects.effects) {
-            if (!acts_on(effect, decisions, layout)) {
-                continue;
-            }
+            if (!acts_on(effect, decisions, layout)) continue;
             subject.in_media = subject.in_media || effect.inside_media;
             for (const KnobSpec* knob : effect.knobs) {
                 const bool matters = knob->matters == nullptr || knob->matters(layout, decisions);
@@ -310,9 +302,7 @@ std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base)
 }
 
 std::vector<SweepPoint> make_truths(const LadderRequest& request) {
-    if (request.subject.is_layer_alone()) {
-        return make_layer_truths(request);
-    }
+    if (request.subject.is_layer_alone()) return make_layer_truths(request);
     Points points{request.subject};
     Knobs reference = preset_knobs(request, Quality::reference);
     std::string of;  // the choice, where there is one

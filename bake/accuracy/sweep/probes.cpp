@@ -12,9 +12,7 @@ namespace opaline::bake {
 
 formats::Result<ProbeLights> make_probe_lights(std::uint32_t n, unsigned threads) {
     auto lights = make_test_lights(n, threads);
-    if (!lights) {
-        return std::move(lights).error();
-    }
+    if (!lights) return std::move(lights).error();
     ProbeLights probe;
     for (const TestLight& light : *lights) {
         runtime::LightVector vector{n, std::vector<float>(4 * light.coarse.size(), 0.0f)};

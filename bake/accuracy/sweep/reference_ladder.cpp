@@ -48,13 +48,9 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
     const formats::Scene& given, const ReferenceLadderOptions& options, const Context& context) {
     const OrientedBodies bodies = orient_bodies(given);
     auto scene = make_reference_scene(bodies.scene ? *bodies.scene : given, context.threads);
-    if (!scene) {
-        return std::move(scene).error();
-    }
+    if (!scene) return std::move(scene).error();
     const auto light = make_environment(kLight);
-    if (!light) {
-        return light.error();
-    }
+    if (!light) return light.error();
     const LightSampler sampler = make_light_sampler(*light, glm::mat3(1.0f));
     const PathSpace space{*scene, sampler, {}};
     EstimateOptions wanted;
@@ -63,9 +59,7 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
     const auto few = estimate_luminance(
         space, choose_receivers(*scene, kFewestReceivers, options.seed, std::nullopt), wanted,
         context);
-    if (!few) {
-        return few.error();
-    }
+    if (!few) return few.error();
     if (few->seconds * kStep * (1 + kTruth) > options.most_seconds) {
         return std::optional<ReferenceLadder>();
     }
@@ -83,9 +77,7 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
          samples *= kStep) {
         wanted.samples = samples - wanted.first;
         const auto estimate = estimate_luminance(space, receivers, wanted, context);
-        if (!estimate) {
-            return estimate.error();
-        }
+        if (!estimate) return estimate.error();
         for (std::size_t i = 0; i < moments.size(); ++i) {
             moments[i].merge(estimate->pixel[i]);
         }
@@ -96,14 +88,10 @@ formats::Result<std::optional<ReferenceLadder>> climb_reference(
     }
     wanted.samples = ladder.truth_samples = kTruth * wanted.first;
     const auto truth = estimate_luminance(space, receivers, wanted, context);
-    if (!truth) {
-        return truth.error();
-    }
+    if (!truth) return truth.error();
     for (std::size_t r = 0; r < climbed.size(); ++r) {
         const ReferenceRung found = compare_rung(climbed[r], truth->pixel);
-        if (found.stated == 0) {
-            return std::optional<ReferenceLadder>();
-        }
+        if (found.stated == 0) return std::optional<ReferenceLadder>();
         ladder.rungs[r].error = found.error;
         ladder.rungs[r].stated = found.stated;
     }

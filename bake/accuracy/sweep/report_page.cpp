@@ -26,9 +26,7 @@ using Json = nlohmann::ordered_json;
 
 formats::Result<std::string> data_uri(const formats::Image8& image) {
     const auto png = formats::encode_png(image, "report.html");
-    if (!png) {
-        return png.error();
-    }
+    if (!png) return png.error();
     return "data:image/png;base64," + encode_base64(*png);
 }
 
@@ -49,9 +47,7 @@ formats::Result<Json> pair_pictures(const SweepResult& result, const CostPair& p
     for (const Picture* picture : shown) {
         auto own = photograph(*picture);
         auto difference = data_uri(draw_difference(*picture, truth, json["scale"].get<double>()));
-        if (!own || !difference) {
-            return own ? difference.error() : own.error();
-        }
+        if (!own || !difference) return own ? difference.error() : own.error();
         json["pictures"].push_back(std::move(*own));
         json["differences"].push_back(std::move(*difference));
     }
@@ -72,9 +68,7 @@ double difference_at(const Picture& picture, const Picture& truth, std::size_t i
 double round_up(double value) {
     const double decade = std::pow(10.0, std::floor(std::log10(value)));
     for (const double step : {1.0, 2.0, 5.0}) {
-        if (value <= step * decade * (1 + 1e-9)) {
-            return step * decade;
-        }
+        if (value <= step * decade * (1 + 1e-9)) return step * decade;
     }
     return 10 * decade;
 }
@@ -117,17 +111,13 @@ formats::Result<std::string> make_report_page(const SweepResult& result,
                                               const SweepAnalysis& analysis, const Json& json) {
     Json pictures;
     auto truth = photograph(result.points[result.truth].picture);
-    if (!truth) {
-        return truth.error();
-    }
+    if (!truth) return truth.error();
     pictures["truth"] = std::move(*truth);
     for (const auto& [name, pair] : {std::pair{"equal_time", &analysis.equal_time},
                                      std::pair{"equal_error", &analysis.equal_error}}) {
         if (*pair) {
             auto own = pair_pictures(result, **pair);
-            if (!own) {
-                return own.error();
-            }
+            if (!own) return own.error();
             pictures[name] = std::move(*own);
         }
     }
@@ -153,9 +143,7 @@ double difference_scale(std::span<const Picture* const> pictures, const Picture&
             }
         }
     }
-    if (differences.empty()) {
-        return 1.0;
-    }
+    if (differences.empty()) return 1.0;
     const auto place =
         differences.begin() +
         static_cast<std::ptrdiff_t>(kShown * static_cast<double>(differences.size() - 1));

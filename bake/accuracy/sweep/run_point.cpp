@@ -106,9 +106,7 @@ constexpr std::size_t kGroup = kViews.size() * kAzimuths;
 StageGroups group_stages(const StageLog& stages, double seconds_total) {
     StageGroups groups{{kPreparationGroup, seconds_total}};
     for (const StageReport& stage : stages) {
-        if (stage.group == kPreparationGroup) {
-            continue;
-        }
+        if (stage.group == kPreparationGroup) continue;
         const auto same = std::find_if(groups.begin(), groups.end(), [&](const GroupSeconds& g) {
             return g.name == stage.group;
         });
@@ -135,9 +133,7 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
     forget_peak_memory();
     const double cpu_before = cpu_seconds();
     const auto bake = run_bake(effects, scene, point.knobs, context);
-    if (!bake) {
-        return bake.error();
-    }
+    if (!bake) return bake.error();
     const double cpu_after = cpu_seconds();
     const formats::AssetView asset = bake->asset.view();
     PointRecord record;
@@ -172,9 +168,7 @@ formats::Result<PointRecord> run_point(const EffectTable& effects, const formats
             relight_receivers(asset, view.model.receivers, {.vector = light}));
     }
     auto picture = draw(asset, view, context.threads);
-    if (!picture) {
-        return std::move(picture).error();
-    }
+    if (!picture) return std::move(picture).error();
     record.picture = std::move(*picture);
     return record;
 }

@@ -88,9 +88,7 @@ struct Sweep {
             return "the file would be " + amount(cost.bytes * 1e-9, "GB");
         }
         const double seconds = cost.seconds * scale();
-        if (seconds_left <= 0) {
-            return "no time was left for its " + amount(seconds, "s");
-        }
+        if (seconds_left <= 0) return "no time was left for its " + amount(seconds, "s");
         if (seconds > seconds_left) {
             return "would take about " + amount(seconds, "s") + ", more than the " +
                    amount(seconds_left, "s") + " left for it";
@@ -104,9 +102,7 @@ struct Sweep {
         if (known == lights.end()) {
             auto probes = has_receivers(scene) ? make_probe_lights(n, context.threads)
                                                : formats::Result<ProbeLights>(ProbeLights{});
-            if (!probes) {
-                return std::move(probes).error();
-            }
+            if (!probes) return std::move(probes).error();
             SweepLights made{std::move(*probes), {}};
             for (const ModelLight& light : view.model.lights) {
                 made.model.push_back(
@@ -120,9 +116,7 @@ struct Sweep {
     // A point that differs only in automatic choices, and made the same ones.
     PointRecord* find_chosen(const SweepPoint& point) {
         for (const Rung& rung : point.rungs) {
-            if (rung.ladder.knob == nullptr || rung.ladder.knob->words.empty()) {
-                continue;
-            }
+            if (rung.ladder.knob == nullptr || rung.ladder.knob->words.empty()) continue;
             const KnobSpec& knob = *rung.ladder.knob;
             for (PointRecord& record : result.points) {
                 Knobs given = record.point.knobs;
@@ -158,14 +152,10 @@ struct Sweep {
             on_step({result.points.size() + result.skipped.size(), total, point.label});
         }
         const auto point_lights = lights_of(point.knobs.cubemap_size);
-        if (!point_lights) {
-            return point_lights.error();
-        }
+        if (!point_lights) return point_lights.error();
         try {
             auto record = run_point(effects, scene, point, view, **point_lights, context);
-            if (!record) {
-                return std::move(record).error();
-            }
+            if (!record) return std::move(record).error();
             measured += record->seconds;
             predicted += cost.seconds;
             result.points.push_back(std::move(*record));
@@ -180,9 +170,7 @@ struct Sweep {
 std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     for (const SweepPoint& candidate : make_truths(sweep.ladder_request())) {
         const Prediction cost = sweep.predict_point(candidate.knobs);
-        if (sweep.objection(cost, 0.5 * sweep.left()).empty()) {
-            return candidate;
-        }
+        if (sweep.objection(cost, 0.5 * sweep.left()).empty()) return candidate;
     }
     return std::nullopt;
 }
@@ -191,9 +179,7 @@ std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
 // and leaves them.
 formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
     const auto truth = choose_truth(sweep);
-    if (!truth) {
-        return formats::ok_status();
-    }
+    if (!truth) return formats::ok_status();
     const auto same = std::find_if(points.begin(), points.end(), [&](const SweepPoint& p) {
         return same_bake(p.knobs, truth->knobs, sweep.result.subject);
     });
@@ -215,9 +201,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     context.threads = thread_count(outer);
     context.on_progress = {};  // steps are the progress
     auto picture_light = open_environment(options.light);
-    if (!picture_light) {
-        return std::move(picture_light).error();
-    }
+    if (!picture_light) return std::move(picture_light).error();
     const SceneFacts facts = inspect_scene(scene);
     Sweep sweep{.effects = effects,
                 .scene = scene,
@@ -247,9 +231,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     if (has_receivers(scene)) {
         constexpr std::uint32_t kModelReceivers = 96;
         auto model = choose_model_probes(scene, kModelReceivers, options.bake.seed, context);
-        if (!model) {
-            return std::move(model).error();
-        }
+        if (!model) return std::move(model).error();
         sweep.view.model = std::move(*model);
     }
 
@@ -258,9 +240,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     const auto draft = resolve_knobs(effects, base);
     base.quality = Quality::preview;
     const auto preview = resolve_knobs(effects, base);
-    if (!draft || !preview) {
-        return (draft ? preview : draft).error();
-    }
+    if (!draft || !preview) return (draft ? preview : draft).error();
     result.plan = plan_bake(effects, scene, facts, *preview);
     result.volume_plan = plan_the_rest(scene, *preview);
     result.subject = sweep_subject(effects, scene, result.plan, *preview, result.volume_plan);
@@ -268,17 +248,13 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     if (result.subject.has_volumes) {
         auto volumes =
             make_sweep_volumes(scene, kShare * options.seconds, options.bake.seed, context);
-        if (!volumes) {
-            return std::move(volumes).error();
-        }
+        if (!volumes) return std::move(volumes).error();
         sweep.view.volumes = std::move(*volumes);
     }
     // A quick point measures the speed of this machine.
     const SweepPoint first{
         std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
-    if (auto status = sweep.visit(first, sweep.left()); !status) {
-        return std::move(status).error();
-    }
+    if (auto status = sweep.visit(first, sweep.left()); !status) return std::move(status).error();
     if (result.points.empty()) {
         return formats::make_error(formats::ErrorKind::usage, "", "--seconds",
                                    "not even a draft fits: it " + result.skipped.front().reason,
@@ -291,9 +267,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         climb.most_seconds = std::max(0.0, 0.5 * sweep.left());
         climb.seed = options.bake.seed;
         auto reference = climb_reference(scene, climb, context);
-        if (!reference) {
-            return std::move(reference).error();
-        }
+        if (!reference) return std::move(reference).error();
         result.reference = std::move(*reference);
         if (!result.reference) {
             result.skipped.push_back(
@@ -310,9 +284,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
                                 .lit_by_volumes = lights_surfaces(result.volume_plan),
                                 .volumes_see_surfaces = sees_surfaces(result.volume_plan)},
                                context);
-        if (!paths) {
-            return std::move(paths).error();
-        }
+        if (!paths) return std::move(paths).error();
         traced = std::move(*paths);
     }
     if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
@@ -324,9 +296,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     result.points.front().point = points.front();  // with the rungs of a base, if it is one
     points.erase(points.begin());
     sweep.total = 1 + points.size();
-    if (auto status = bake_truth(sweep, points); !status) {
-        return std::move(status).error();
-    }
+    if (auto status = bake_truth(sweep, points); !status) return std::move(status).error();
     order_points(points,
                  [&](const SweepPoint& point) { return sweep.predict_point(point.knobs).seconds; });
     for (const SweepPoint& point : points) {

@@ -26,9 +26,7 @@ std::optional<Slope> fit_slope(std::span<const Convergence> rungs, bool semi_log
         }
     }
     const std::size_t count = count_unsaturated(useful);
-    if (count < 2) {
-        return std::nullopt;
-    }
+    if (count < 2) return std::nullopt;
     Slope fit;
     double mean_x = 0, mean_y = 0;
     std::vector<double> x, y;
@@ -48,9 +46,7 @@ std::optional<Slope> fit_slope(std::span<const Convergence> rungs, bool semi_log
         xx += (x[i] - mean_x) * (x[i] - mean_x);
         xy += (x[i] - mean_x) * (y[i] - mean_y);
     }
-    if (xx == 0) {
-        return std::nullopt;
-    }
+    if (xx == 0) return std::nullopt;
     fit.slope = xy / xx;
     fit.intercept = mean_y - fit.slope * mean_x;
     double residual = 0;
@@ -78,9 +74,7 @@ std::optional<Theory> convergence_theory(const Ladder& ladder, double g) {
         return Theory{-0.5, false, "samples of the Monte Carlo reference",
                       "independent paths, whose variances add"};
     }
-    if (ladder.knob == nullptr) {
-        return std::nullopt;
-    }
+    if (ladder.knob == nullptr) return std::nullopt;
     const KnobTheory& theory = ladder.knob->theory;
     const bool semi_log = theory.rate_by_cosine != nullptr;
     const double rate = semi_log ? theory.rate_by_cosine(g) : theory.rate;

@@ -22,13 +22,9 @@ void take_bounds(const VolumeErrorReport& from, double& rms, double (&ci95)[2]) 
 formats::Result<SweepVolumes> make_sweep_volumes(const formats::Scene& scene, double seconds,
                                                  std::uint64_t seed, const Context& context) {
     SweepVolumes volumes;
-    if (scene.volumes.empty()) {
-        return volumes;
-    }
+    if (scene.volumes.empty()) return volumes;
     const auto reference = make_reference_scene(scene, context.threads);
-    if (!reference) {
-        return reference.error();
-    }
+    if (!reference) return reference.error();
     volumes.probes = choose_volume_probes(*reference, kProbes, seed);
     // A short run first, to find how much the time allows.
     constexpr std::uint64_t kFewEvents = 300000;
@@ -45,9 +41,7 @@ formats::Result<SweepVolumes> make_sweep_volumes(const formats::Scene& scene, do
             *reference, volumes.probes, seed,
             static_cast<std::uint64_t>(times * static_cast<double>(kFewEvents)), never, context);
     }
-    if (!truth) {
-        return std::move(truth).error();
-    }
+    if (!truth) return std::move(truth).error();
     volumes.truth = std::move(*truth);
     for (std::size_t place = 0; place < kLightPlaces; ++place) {
         double square = 0;

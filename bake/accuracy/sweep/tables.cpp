@@ -15,9 +15,7 @@ using Json = nlohmann::ordered_json;
 
 // One cell of a CSV row.
 std::string text_cell(const std::string& text) {
-    if (text.find_first_of(",\"\r\n") == std::string::npos) {
-        return text;
-    }
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
     std::string quoted = "\"";
     for (const char c : text) {
         quoted += c == '"' ? "\"\"" : std::string(1, c);

@@ -25,9 +25,7 @@ formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
         const double took = std::max(seconds_since(start), 1e-3);
         left -= took;
         const double times = std::min(left / took, kMostTimes);
-        if (!traced || times < 2 || wanted.max_events >= kMostEvents) {
-            return traced;
-        }
+        if (!traced || times < 2 || wanted.max_events >= kMostEvents) return traced;
         wanted.max_events =
             std::min(kMostEvents,
                      static_cast<std::uint64_t>(times * static_cast<double>(wanted.max_events)));

@@ -38,9 +38,7 @@ double column_of(const formats::Volume& volume, const VolumeRay& ray) {
             return 0;
         }
     }
-    if (!(begin < end)) {
-        return 0;
-    }
+    if (!(begin < end)) return 0;
     constexpr double kStepsOfVoxel = 4;
     const double count = std::ceil((end - begin) * glm::length(along) * kStepsOfVoxel);
     const double step = (end - begin) / count;

@@ -146,9 +146,7 @@ VolumeErrorReport compare_volumes(std::span<const double> luminance,
                                   std::uint64_t seed) {
     VolumeErrorReport report;
     const std::size_t probes = luminance.size() / kLightPlaces;
-    if (probes == 0) {
-        return report;
-    }
+    if (probes == 0) return report;
     const std::vector<ModelPair> scattered = make_pairs(luminance, truth);
     const std::vector<ModelPair> pairs = with_passing(scattered, through, truth);
     for (std::size_t place = 0; place < kLightPlaces; ++place) {
@@ -183,14 +181,10 @@ formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
                                                  const VolumeCheckOptions& options,
                                                  const Context& context) {
     const auto reference = make_reference_scene(scene, context.threads);
-    if (!reference) {
-        return reference.error();
-    }
+    if (!reference) return reference.error();
     const std::vector<VolumeProbe> probes =
         choose_volume_probes(*reference, options.probes, options.seed);
-    if (probes.empty()) {
-        return VolumeErrorReport();
-    }
+    if (probes.empty()) return VolumeErrorReport();
     const std::vector<double> luminance =
         march_probes(asset.volumes, asset.cubemap_size, scene.origin, probes, context.threads);
     const std::vector<double> through =
@@ -206,9 +200,7 @@ formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
             return sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative());
         },
         context, terms);
-    if (!truth) {
-        return truth.error();
-    }
+    if (!truth) return truth.error();
     return compare_volumes(luminance, through, *truth, options.seed);
 }
 
@@ -218,15 +210,11 @@ formats::Result<GlowErrorReport> check_glow(const formats::Scene& scene,
                                             const Context& context) {
     const formats::Scene black = with_black_surfaces(scene);
     const auto reference = make_reference_scene(black, context.threads);
-    if (!reference) {
-        return reference.error();
-    }
+    if (!reference) return reference.error();
     GlowErrorReport report;
     const std::vector<VolumeProbe> probes =
         choose_volume_probes(*reference, options.probes, options.seed);
-    if (probes.empty()) {
-        return report;
-    }
+    if (probes.empty()) return report;
     const std::vector<double> luminance =
         march_glow(asset.volumes, scene.origin, probes, context.threads);
     const auto truth = trace_volume_truth(
@@ -236,9 +224,7 @@ formats::Result<GlowErrorReport> check_glow(const formats::Scene& scene,
             return sum.noise() <= std::max(options.noise, options.noise_share * sum.rms_relative());
         },
         context, TermSet::emitters);
-    if (!truth) {
-        return truth.error();
-    }
+    if (!truth) return truth.error();
     const MeanSquares sum = compare(luminance, *truth);
     report.rms_relative = sum.rms_relative();
     report.bias = sum.bias();
@@ -273,9 +259,7 @@ std::vector<double> march_probes(const formats::VolumesView& volumes, std::uint3
         const runtime::LitVolumes ready = runtime::light_volumes(volumes, lit);
         for (std::size_t p = 0; p < probes.size(); ++p) {
             for (std::size_t place = 0; place < kLightPlaces; ++place) {
-                if (light_number(p, probes.size(), place) != l) {
-                    continue;
-                }
+                if (light_number(p, probes.size(), place) != l) continue;
                 luminance[place * probes.size() + p] =
                     luminance_along(ready, origin, probes[p].ray[place]);
             }

@@ -45,9 +45,7 @@ Bricks weigh_bricks(std::span<const formats::Volume> volumes) {
             for (b.y = 0; b.y < grid.extent.y; ++b.y) {
                 for (b.x = 0; b.x < grid.extent.x; ++b.x) {
                     const std::uint32_t number = grid.brick_at(grid.first_brick + b);
-                    if (number == Grid::kEmpty) {
-                        continue;
-                    }
+                    if (number == Grid::kEmpty) continue;
                     for (const float density : grid.brick(number)) {
                         sum += weight * static_cast<double>(density);
                     }
@@ -77,9 +75,7 @@ glm::vec3 draw_point(const Bricks& bricks, std::span<const formats::Volume> volu
     for (; voxel < value.size(); ++voxel) {
         left -= static_cast<double>(value[voxel]);
         last = value[voxel] > 0 ? voxel : last;
-        if (left < 0) {
-            break;
-        }
+        if (left < 0) break;
     }
     const int at = static_cast<int>(voxel < value.size() ? voxel : last);
     constexpr int kSide = Grid::kSide;
@@ -121,16 +117,12 @@ float find_end(const ReferenceScene& reference, glm::vec3 from, glm::vec3 direct
     RayOrigin origin{from};
     for (std::uint32_t i = 0; i < kMostSteps; ++i) {
         const auto hit = surfaces.closest_hit(origin, direction, kForever);
-        if (!hit) {
-            return kForever;
-        }
+        if (!hit) return kForever;
         const std::uint32_t material = surfaces.scene().primitives[hit->primitive].material;
         const bool is_culled = reference.medium_of[material] == formats::kNone &&
                                glm::dot(direction, hit->flat) > 0 &&
                                !surfaces.scene().materials[material].double_sided;
-        if (!is_culled) {
-            return glm::dot(hit->position - from, direction);
-        }
+        if (!is_culled) return glm::dot(hit->position - from, direction);
         origin = go_straight_on(origin, leave_surface(*hit, direction));
     }
     return kForever;
@@ -155,9 +147,7 @@ std::vector<VolumeProbe> choose_volume_probes(const ReferenceScene& reference, s
     const std::span<const formats::Volume> volumes = reference.surfaces.scene().volumes;
     const Bricks bricks = weigh_bricks(volumes);
     std::vector<VolumeProbe> probes;
-    if (bricks.list.empty() || !(bricks.list.back().before_and_own > 0)) {
-        return probes;
-    }
+    if (bricks.list.empty() || !(bricks.list.back().before_and_own > 0)) return probes;
     const float extent = extent_of(volumes);
     constexpr std::uint32_t kTries = 16, kPoint = 16;  // purposes below kPoint are directions
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -169,9 +159,7 @@ std::vector<VolumeProbe> choose_volume_probes(const ReferenceScene& reference, s
                 point = drawn;
             }
         }
-        if (!point) {
-            continue;
-        }
+        if (!point) continue;
         VolumeProbe probe;
         const auto sun = draw(seed, i, 0), even = draw(seed, i, 1);
         probe.sun = even_direction(sun[0], sun[1]);
@@ -250,24 +238,18 @@ formats::Result<VolumeTruth> trace_volume_truth(
     while (count > 0) {
         wanted.first = truth.samples;
         const auto estimate = estimate_pixels(count, wanted, context, sample);
-        if (!estimate) {
-            return estimate.error();
-        }
+        if (!estimate) return estimate.error();
         truth.samples += wanted.samples;
         truth.events += estimate->events;
         for (std::uint32_t i = 0; i < count; ++i) {
             truth.luminance[i].merge(estimate->pixel[i]);
         }
-        if (is_enough(truth)) {
-            break;
-        }
+        if (is_enough(truth)) break;
         const double done = truth.samples;
         const double affordable = done * static_cast<double>(max_events) /
                                   static_cast<double>(std::max<std::uint64_t>(truth.events, 1));
         wanted.samples = static_cast<std::uint32_t>(std::clamp(affordable - done, 0.0, done));
-        if (wanted.samples < truth.samples / 8 + 1) {
-            break;
-        }
+        if (wanted.samples < truth.samples / 8 + 1) break;
     }
     return truth;
 }

@@ -127,9 +127,7 @@ formats::Status ShownFile::Parts::choose_rows(const ViewState& state) {
     if (state.coefficients == coefficients && state.error_white == error_white) {
         return formats::ok_status();
     }
-    if (state.error_white > 0 && receiver_errors.empty()) {
-        return stored_errors(asset, path).error();
-    }
+    if (state.error_white > 0 && receiver_errors.empty()) return stored_errors(asset, path).error();
     const auto start = ViewClock::now();
     renderer.reset();
     lit_for.reset();

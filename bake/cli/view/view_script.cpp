@@ -165,12 +165,8 @@ bool ScriptRun::carry_out(const ScriptStep& step, ViewState& state, const Shown&
         set_emitter(state, change->name, change->color);
         return true;
     }
-    if (const auto* wait = std::get_if<WaitFrames>(&step.what)) {
-        return waited_++ >= wait->frames;
-    }
-    if (std::holds_alternative<WaitReload>(step.what)) {
-        return shown.is_reloaded && shown.is_settled;
-    }
+    if (const auto* wait = std::get_if<WaitFrames>(&step.what)) return waited_++ >= wait->frames;
+    if (std::holds_alternative<WaitReload>(step.what)) return shown.is_reloaded && shown.is_settled;
     if (const auto* screenshot = std::get_if<Screenshot>(&step.what)) {
         // Controls take a few frames to find their sizes.
         constexpr std::size_t kFrames = 4;

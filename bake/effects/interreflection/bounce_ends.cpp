@@ -27,9 +27,7 @@ enum class Change : std::uint8_t { none, other_surface, nothing };
 
 Change change_between(const BounceEnd& a, const BounceEnd& b) {
     constexpr float kBent = 0.8f, kApart = 0.25f;
-    if (!a.sends() || !b.sends()) {
-        return a.sends() != b.sends() ? Change::nothing : Change::none;
-    }
+    if (!a.sends() || !b.sends()) return a.sends() != b.sends() ? Change::nothing : Change::none;
     const glm::vec3 way = b.distance * b.direction - a.distance * a.direction;
     const float apart =
         std::max(std::abs(glm::dot(way, a.side.normal)), std::abs(glm::dot(way, b.side.normal)));
@@ -177,9 +175,7 @@ std::uint64_t find_bounce_ends(const formats::Scene& scene, const RayScene& rays
         BounceEnd& end = ends[hit.cell] = end_of(scene, hit.hits, hit.lane, hit.direction);
         end.cell = static_cast<std::uint32_t>(hit.cell);
     });
-    if (grid.most_cut() == 0 || traced == 0) {
-        return traced;
-    }
+    if (grid.most_cut() == 0 || traced == 0) return traced;
     const Frame frame = make_frame(at.normal);
     const std::uint64_t key = key_of(at);
     QuarterRays others(scene, rays, at.origin, ends);

@@ -115,16 +115,12 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
     gathered.rays = find_bounce_ends(scene, rays, at, grid, seed, ends);
     std::vector<MirroredRay> mirrored;
     for (const BounceEnd& end : ends) {
-        if (!end.is_met) {
-            continue;
-        }
+        if (!end.is_met) continue;
         const float share =
             1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
         const float near = 1 / std::max(end.distance, kNoDistance);
         gathered.nearness += share * near * near;
-        if (!end.side.is_seen) {
-            continue;
-        }
+        if (!end.side.is_seen) continue;
         const BounceCell& cell = (end.is_quarter ? grid.quarters : grid.cells)[end.cell];
         const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
         const FootprintKernel kernel = footprint_of(at.origin, end, cell, frame);

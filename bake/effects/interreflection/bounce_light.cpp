@@ -154,9 +154,7 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
                     std::vector<float> to = field.light.emitted.row(i);
                     const auto add = [&](std::span<const NodeWeight> from,
                                          const BandColour& share) {
-                        if (from.empty()) {
-                            return;
-                        }
+                        if (from.empty()) return;
                         std::ranges::fill(row, 0.0f);
                         add_node_rows(tree, from, row);
                         add_scaled(row, share, to);
@@ -196,9 +194,7 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
     const std::uint32_t count = count_bounce_rays(inputs.knobs[kBounceRays]);
     std::vector<Scatterer> scatterers =
         find_scatterers(inputs, count_scatterers(inputs.knobs), rays);
-    if (scatterers.empty()) {
-        return nullptr;
-    }
+    if (scatterers.empty()) return nullptr;
     const bool is_coloured = std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
     const ScattererLight own = light_scatterers(inputs, scatterers, is_coloured ? 3 : 1, rays);
     const Field field{inputs, scatterers, own};
@@ -235,9 +231,7 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
         const PacketHits hits = closest_of(rays, some);
         for (std::size_t i = 0; i < some.size(); ++i) {
             const SeenSide side = hits.hit[i] != 0 ? side_of_hit(scene, hits, i) : SeenSide{};
-            if (!side.is_seen) {
-                continue;
-            }
+            if (!side.is_seen) continue;
             const float t = hits.distance[i];
             const float area =
                 static_cast<float>(solid_angle) * t * t / std::max(side.cosine, kGrazing);
@@ -269,9 +263,7 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
 std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceView> views,
                              double solid_angle, std::uint32_t cubemap_size, std::uint32_t bands,
                              std::span<float> rows) {
-    if (views.empty() || light.rays.is_empty()) {
-        return 0;
-    }
+    if (views.empty() || light.rays.is_empty()) return 0;
     std::uint64_t traced = 0;
     const std::vector<SeenNode> seen =
         find_seen(light.scene, light.rays, light.tree, views, solid_angle, traced);

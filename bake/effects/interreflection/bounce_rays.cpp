@@ -71,9 +71,7 @@ BounceGrid make_bounce_grid(std::uint32_t count) {
 BounceGrid make_cut_grid(std::uint32_t count) {
     constexpr std::uint32_t kFewest = 256;
     constexpr double kCells = 0.64;
-    if (count < kFewest) {
-        return make_bounce_grid(count);
-    }
+    if (count < kFewest) return make_bounce_grid(count);
     BounceGrid grid = make_bounce_grid(count_bounce_rays(kCells * count));
     grid.quarters = make_bounce_grid(4 * grid.count()).cells;
     grid.rays = count;
@@ -131,9 +129,7 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                                  .error = hits.error[i],
                                  .material = hits.material[i],
                                  .side = side_of_hit(scene, hits, i)};
-                if (!end.side.is_seen) {
-                    continue;
-                }
+                if (!end.side.is_seen) continue;
                 add(tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0),
                     ray);
                 const MirroredRay on = mirror(scene, end, ray.share, ray.number);

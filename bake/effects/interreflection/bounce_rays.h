@@ -65,9 +65,7 @@ inline std::uint32_t count_bounce_rays(double wanted) {
 /// The point of the unit disk of two numbers in [0, 1]: concentric squares become circles.
 inline glm::vec2 to_disk(float u, float v) {
     const float a = 2 * u - 1, b = 2 * v - 1;
-    if (a == 0 && b == 0) {
-        return glm::vec2(0);
-    }
+    if (a == 0 && b == 0) return glm::vec2(0);
     constexpr float kQuarter = std::numbers::pi_v<float> / 4;
     const bool first = std::abs(a) > std::abs(b);
     const float r = first ? a : b;
@@ -139,9 +137,7 @@ inline glm::vec2 place_in_cell(const BounceGrid& grid, std::uint64_t seed, std::
 template <class Visit>
 std::uint64_t trace_bounces(const RayScene& rays, const Receiver& at, const BounceGrid& grid,
                             std::uint64_t seed, Visit&& visit) {
-    if (at.normal == glm::vec3(0) || rays.is_empty()) {
-        return 0;
-    }
+    if (at.normal == glm::vec3(0) || rays.is_empty()) return 0;
     const float width = 1 / static_cast<float>(grid.side);
     const Frame frame = make_frame(at.normal);
     const std::uint64_t key = key_of(at);

@@ -85,9 +85,7 @@ BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materi
 }
 
 void BounceTree::set_sky() {
-    if (row_size_ == 0 || row_size_ % kSkyTexels != 0) {
-        return;
-    }
+    if (row_size_ == 0 || row_size_ % kSkyTexels != 0) return;
     rows_.resize(nodes_.size() + kSkyTexels);
     const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
     std::vector<float> row(row_size_);
@@ -238,9 +236,7 @@ void BounceTree::set_rows(const CodedRows& rows, const Context& context) {
             return 0;
         },
         [](Range, int) {});
-    if (context.cancelled()) {
-        return;
-    }
+    if (context.cancelled()) return;
     for (std::size_t i = trunk.size(); i-- > 0;) {
         const std::size_t v = trunk[i];
         mean[v] = std::move(mean[nodes_[v].right]);

@@ -126,9 +126,7 @@ template <class Visit>
 void BounceTree::find_near(const FootprintKernel& kernel, const SurfaceSide& side,
                            Brightness looked_for, Visit&& visit) const {
     const std::uint32_t root = root_of(side);
-    if (root == formats::kNone) {
-        return;
-    }
+    if (root == formats::kNone) return;
     constexpr float kReach = 0.8660254f;  // 3 / sqrt(12)
     constexpr float kWidest = 1;
     const glm::vec3 low = kernel.centre - kReach * kernel.extent;

@@ -57,9 +57,7 @@ bool GatherSites::weigh(const Receiver& at, float most_noise,
     std::array<float, kNearest> square;
     const std::size_t found =
         tree_ ? tree_->index.knnSearch(&at.origin.x, kNearest, nearest.data(), square.data()) : 0;
-    if (found < kFewest) {
-        return false;
-    }
+    if (found < kFewest) return false;
     const float widest = std::sqrt(square[found - 1]);
     std::array<NearSite, kNearest> near;
     std::size_t count = 0;
@@ -74,9 +72,7 @@ bool GatherSites::weigh(const Receiver& at, float most_noise,
                              (site.at.origin - at.origin) / widest, site.at.normal, 0};
         }
     }
-    if (count < kFewest) {
-        return false;
-    }
+    if (count < kFewest) return false;
     fit_near_sites(std::span(near).first(count), at.normal, false, weights);
     float noise = 0;
     for (const SiteWeight& w : weights) {

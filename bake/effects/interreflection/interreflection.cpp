@@ -96,9 +96,7 @@ constexpr std::array<const KnobSpec*, 1> kKnobs{&kBounceRays};
 
 std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t& rays) {
     const std::shared_ptr<const BounceLight> bounced = find_bounce_light(inputs, rays);
-    if (!bounced) {
-        return nullptr;
-    }
+    if (!bounced) return nullptr;
     auto light = std::make_unique<OtherLight>();
     light->bands = bounced->bands;
     light->name = "interreflection";

@@ -12,9 +12,7 @@ namespace opaline::bake {
 namespace bounce_knobs {
 inline bool bounces(const RowLayout&, std::span<const PlanEntry> decisions) {
     for (const PlanEntry& entry : decisions) {
-        if (entry.name == "interreflection" && entry.on) {
-            return true;
-        }
+        if (entry.name == "interreflection" && entry.on) return true;
     }
     return false;
 }

@@ -137,9 +137,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
             field.inputs.rows_of_medium(material, true, std::span(outside).first(members.size()),
                                         std::span(inside).first(members.size()), kCubemap);
     }
-    if (field.inputs.context.cancelled()) {
-        return 0;
-    }
+    if (field.inputs.context.cancelled()) return 0;
     const RowLayout& layout = field.inputs.layouts[material];
     const formats::Medium& medium = *field.inputs.bake.scene.materials[material].medium;
     const float eta = medium.eta;

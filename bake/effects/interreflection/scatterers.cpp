@@ -80,9 +80,7 @@ void filter_albedo(const LightInputs& inputs, std::span<const Seen> all,
     const std::vector<float> cells = BounceTree(scatterers, inputs.layouts.size(), 0).cells();
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         Scatterer& made = scatterers[i];
-        if (!has_pyramid(textures, scene.materials[made.material])) {
-            continue;
-        }
+        if (!has_pyramid(textures, scene.materials[made.material])) continue;
         const Seen& seen = all[chosen[i]];
         const auto& [primitive, first_index] = seen.triangle;
         const TextureView view{
@@ -173,9 +171,7 @@ std::vector<Scatterer> spread_over_material(const LightInputs& inputs, std::uint
     }
     const AreaTable table = make_area_table(scene, own);
     std::vector<Scatterer> spread;
-    if (table.triangle.empty()) {
-        return spread;
-    }
+    if (table.triangle.empty()) return spread;
     spread.reserve(count);
     for (const SurfacePoint& p :
          scatter_points(scene, table, count, false, inputs.knobs.seed, RandomStage::bounce_rays)) {

@@ -131,9 +131,7 @@ void light_new_sites(const LightInputs& inputs, BounceLight& light, std::vector<
 void light_sites(const LightInputs& inputs, BounceLight& light, std::uint64_t& rays) {
     Candidates unknown = find_candidates(inputs);
     // Rays of their own cost less for few.
-    if (unknown.at.size() < kFewestWithSites) {
-        return;
-    }
+    if (unknown.at.size() < kFewestWithSites) return;
     light.site_rows = CodedRows(0, light.tree.row_size());
     std::vector<GatherSite> sites;
     std::size_t wanted = kMostSites;

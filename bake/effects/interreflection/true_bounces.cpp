@@ -56,9 +56,7 @@ class TruePath {
     std::uint64_t look(const Receiver& along, Rgb weight, std::uint32_t number) {
         const float most = largest(weight);
         rays_ = 0;
-        if (!(most > 0)) {
-            return rays_;
-        }
+        if (!(most > 0)) return rays_;
         Receiver from;
         is_mirrored_ = false;
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
@@ -81,9 +79,7 @@ class TruePath {
     // Roulette below 1 / scale.
     static bool survives(float scale, float u, Rgb& weight) {
         const float survival = std::min(1.0f, largest(weight) * scale);
-        if (!(u < survival)) {
-            return false;
-        }
+        if (!(u < survival)) return false;
         weight = (1 / survival) * weight;
         return true;
     }
@@ -108,15 +104,11 @@ class TruePath {
             add_node(light.tree.sky_node(direction), weight);
         }
         is_mirrored_ = false;
-        if (!side.is_seen) {
-            return false;
-        }
+        if (!side.is_seen) return false;
         const RowLayout& layout = light.layouts[hits.material[0]];
         const formats::Material& material = light.scene.materials[hits.material[0]];
         const bool is_medium = material.medium && !material.sheet;
-        if (!sends_light(layout) && !is_medium) {
-            return false;
-        }
+        if (!sends_light(layout) && !is_medium) return false;
         const SurfacePoint point =
             make_surface_point(light.scene, {hits.primitive[0], hits.first_index[0]},
                                {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
@@ -152,9 +144,7 @@ class TruePath {
         add_sky(front, weight * reflect);
         add_sky(back, weight * transmit);
         const float reflected = largest(reflect), all = reflected + largest(transmit);
-        if (!(all > 0)) {
-            return false;
-        }
+        if (!(all > 0)) return false;
         const float share = reflected / all;
         const bool is_reflected = side_choice < share;
         next = is_reflected ? front : back;
@@ -176,9 +166,7 @@ class TruePath {
     }
 
     void add_node(std::uint32_t node, Rgb weight) {
-        if (node == formats::kNone) {
-            return;
-        }
+        if (node == formats::kNone) return;
         const std::vector<float> row = truth_.light->tree.rows().row(node);
         const std::uint32_t bands = truth_.light->bands;
         const std::size_t texels = row.size() / bands;

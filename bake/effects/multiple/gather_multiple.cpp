@@ -39,9 +39,7 @@ struct Gather {
 
     bool may_take(const ClusterNode& node) const {
         const BoxDistance d = box_distance(node, position);
-        if (d.nearest < near_squared) {
-            return false;
-        }
+        if (d.nearest < near_squared) return false;
         const std::array<float, 3> most = eval_far(profile, d.nearest);
         const std::array<float, 3> least = eval_far(profile, d.farthest);
         return node.norm * (most[0] - least[0]) <= allowed[0] &&
@@ -150,9 +148,7 @@ void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm:
                      glm::vec3 normal, const GatherOptions& options,
                      std::vector<ClusterWeight>& weights) {
     weights.clear();
-    if (tree.nodes.empty() || profile.table.empty()) {
-        return;
-    }
+    if (tree.nodes.empty() || profile.table.empty()) return;
     const float radius = profile.near_radius;
     Gather gather{tree, profile, position, {}, radius * radius, weights, {}};
     for (std::size_t band = 0; band < profile.bands; ++band) {

@@ -25,15 +25,11 @@ using formats::Medium;
 
 Profile make_profile(Medium::Profile kind, bool paper, double sigma_s_prime, double sigma_a,
                      double eta) {
-    if (paper) {
-        return make_dipole(DipoleKind::classic_fitted, sigma_s_prime, sigma_a, eta);
-    }
+    if (paper) return make_dipole(DipoleKind::classic_fitted, sigma_s_prime, sigma_a, eta);
     if (kind == Medium::Profile::classic) {
         return make_dipole(DipoleKind::classic, sigma_s_prime, sigma_a, eta);
     }
-    if (kind == Medium::Profile::beams) {
-        return make_beam_diffusion(sigma_s_prime, sigma_a, eta);
-    }
+    if (kind == Medium::Profile::beams) return make_beam_diffusion(sigma_s_prime, sigma_a, eta);
     return make_dipole(DipoleKind::better, sigma_s_prime, sigma_a, eta);
 }
 

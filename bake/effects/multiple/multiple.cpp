@@ -193,9 +193,7 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
 
 // Rows by view are asked for one view; else the mean over all is what the row holds.
 glm::vec3 seen_of(const EffectInputs& inputs, const TruthReceiver& receiver) {
-    if (receiver.seen != glm::vec3(0)) {
-        return receiver.seen;
-    }
+    if (receiver.seen != glm::vec3(0)) return receiver.seen;
     return inputs.layout.view_harmonics > 0 ? receiver.inside.normal : glm::vec3(0);
 }
 

@@ -115,9 +115,7 @@ double expected_samples(const formats::Medium& medium, double area, const Knobs&
     const double per_path = knobs[kSamplesPerPath];
     const double least = kLeastSamplesPerPath * per_path;
     const double most = knobs[kSamples];
-    if (knobs.is_given(kSamples)) {
-        return most;
-    }
+    if (knobs.is_given(kSamples)) return most;
     const double depth = least_depth(dipoles_of(medium));
     return std::clamp(per_path * area / (depth * depth), std::min(least, most), most);
 }
@@ -132,9 +130,7 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
     constexpr int kRings = 48;
     const auto dipoles = dipoles_of(medium);
     const double smallest = least_depth(dipoles);
-    if (!std::isfinite(smallest)) {
-        return 0;
-    }
+    if (!std::isfinite(smallest)) return 0;
     const double nearest = std::min(0.1 * std::max(smallest, std::sqrt(sample_area)), 0.5 * reach);
     const double step = std::log(reach / nearest) / kRings;
     const auto far = [&](const Dipole& d, double r) {
@@ -146,9 +142,7 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
         const double side = std::sqrt(patch);
         for (const Dipole& d : dipoles) {
             const double change = far(d, std::max(0.0, r - 0.5 * side)) - far(d, r + 0.7 * side);
-            if (patch * change > tolerance * dipole_total(d)) {
-                return false;
-            }
+            if (patch * change > tolerance * dipole_total(d)) return false;
         }
         return true;
     };

@@ -50,9 +50,7 @@ double diffusion_exponent(double albedo) {
 double reaches(const Band& band, double g, double eta, double depth) {
     const double straight = std::exp(-band.sigma_a * depth);
     const double reduced = (1 - g) * band.sigma_s, sigma_t = reduced + band.sigma_a;
-    if (!(reduced > 0) || !(band.sigma_a > 0)) {
-        return straight;
-    }
+    if (!(reduced > 0) || !(band.sigma_a > 0)) return straight;
     const double albedo = reduced / sigma_t, k = diffusion_exponent(albedo);
     const double far = k * sigma_t * depth;
     // x / sinh(x) without overflow; 1 at 0.
@@ -64,12 +62,8 @@ double reaches(const Band& band, double g, double eta, double depth) {
 }  // namespace
 
 double small_body_bound(const Medium& medium, const Band& band, double diagonal, double area) {
-    if (medium.eta != 1 || !is_dipole(medium)) {
-        return HUGE_VAL;
-    }
-    if (!(band.sigma_s > 0)) {
-        return 0;
-    }
+    if (medium.eta != 1 || !is_dipole(medium)) return HUGE_VAL;
+    if (!(band.sigma_s > 0)) return 0;
     const double albedo = band.sigma_s / (band.sigma_s + band.sigma_a);
     const double once = once_bound(band, diagonal);
     const double reduced = (1 - formats::mean_cosine(medium.phase)) * band.sigma_s;

@@ -37,9 +37,7 @@ double spread_of_multiple(const Band& band, double g, double eta, const Shape& s
 // own facets, whose cosines differ in proportion to their angle.
 double spread_of_one_event(const Band& band, double eta, const Shape& shape) {
     const double sigma_t = band.sigma_s + band.sigma_a;
-    if (!(band.sigma_s > 0)) {
-        return 0;
-    }
+    if (!(band.sigma_s > 0)) return 0;
     const double sine = std::min(1.0, 1 / eta), cosine = std::sqrt(1 - sine * sine);
     const double shift = sine / (sigma_t * (1 + cosine));
     const double lost = std::min(1.0, 2 * std::numbers::pi * shift / shape.feature);

@@ -44,9 +44,7 @@ std::array<double, 3> transport_lengths(const formats::Medium& medium,
 }
 
 double half_space_error(double chord) {
-    if (!(chord > 0)) {
-        return kLargestError;
-    }
+    if (!(chord > 0)) return kLargestError;
     // Straight lines in logarithms of both; the outermost two go on.
     std::size_t i = 0;
     while (i + 2 < kMeasured.size() && chord > kMeasured[i + 1].chord) {
@@ -119,9 +117,7 @@ double body_error(const EffectInputs& inputs, const MediumProfile& profile) {
 
 void warn_of_thin_parts(const EffectInputs& inputs, const MediumProfile& profile,
                         std::vector<formats::Diagnostic>& warnings) {
-    if (inputs.layout.at_entry) {
-        return;
-    }
+    if (inputs.layout.at_entry) return;
     constexpr double kWorthSaying = 0.1;
     const double error = body_error(inputs, profile);
     if (error > kWorthSaying) {

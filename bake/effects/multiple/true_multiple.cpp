@@ -121,9 +121,7 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLi
     const auto [seed, receiver] = key;
     const std::size_t lights = smooth.lights;
     TwoEstimates estimates{Luminance(lights), Luminance(lights)};
-    if (integral.profile.table.empty()) {
-        return estimates;
-    }
+    if (integral.profile.table.empty()) return estimates;
     PieceTable table;
     table.pieces.reserve(integral.triangles.size());
     table.cumulative.reserve(integral.triangles.size());
@@ -131,9 +129,7 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLi
     for (std::uint32_t t = 0; t < integral.triangles.size(); ++t) {
         splitter.add(t);
     }
-    if (table.pieces.empty()) {
-        return estimates;
-    }
+    if (table.pieces.empty()) return estimates;
     const double total = table.cumulative.back();
     Luminance irradiance(lights), diffuse(lights);
     std::uint32_t drawn = 0;

@@ -150,9 +150,7 @@ double four_views_error(const formats::Medium& medium, const MaterialFacts& body
         round += space.weight * (own + curvature(eta, fit, ball) - all);
         sum += space.weight;
     }
-    if (!(sum > 0)) {
-        return 0;
-    }
+    if (!(sum > 0)) return 0;
     // A slab that absorbs nothing shows 1 - e^(-x / c') under even light, x its thickness in mean
     // free paths. Lit from one side it bends by more, within 20 % of doubling at x = .5 to 5 and
     // index 1.
@@ -203,9 +201,7 @@ bool measures_views(const Knobs& knobs) {
 }
 
 void amend_views(const ModelError& measured, const EffectInputs& inputs, PlanEntry& entry) {
-    if (measured.receivers == 0) {
-        return;
-    }
+    if (measured.receivers == 0) return;
     const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
     const bool is_known = body.has_thickness();
     const double one =

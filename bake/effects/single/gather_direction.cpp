@@ -120,9 +120,7 @@ void trace_open(const GatherJob& job, const GatherDirection& direction, GatherWo
         const PacketEntries entries =
             find_entries(job.rays, job.medium.material, lanes, packet, shells, work.counts);
         for (std::size_t lane = 0; lane < count; ++lane) {
-            if (entries.lit[lane] == 0) {
-                continue;
-            }
+            if (entries.lit[lane] == 0) continue;
             const GatherWorkspace::Open& open = work.open[begin + lane];
             const Arrival arrival{
                 entries.distance[lane],

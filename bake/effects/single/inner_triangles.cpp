@@ -52,9 +52,7 @@ std::array<std::int32_t, RayPacket::kSize> count_shells(const RayScene& rays,
                 hits.distance[lane] + std::max(hits.error[lane], 1e-6f * hits.distance[lane]);
             any |= lanes[lane];
         }
-        if (any == 0) {
-            break;
-        }
+        if (any == 0) break;
     }
     return shells;
 }
@@ -64,9 +62,7 @@ bool lies_inside(const RayScene& rays, std::uint32_t material, const Triangle& t
     const auto& [a, b, c] = triangle.corner;
     const glm::vec3 across = glm::cross(b - a, c - a);
     const float area = glm::length(across);
-    if (!(area > 0)) {
-        return false;
-    }
+    if (!(area > 0)) return false;
     const glm::vec3 normal = across / area;
     const glm::vec3 tangent = glm::normalize(b - a);
     const glm::vec3 other = glm::cross(normal, tangent);

@@ -104,9 +104,7 @@ SingleRows gather_single_rows(const RayScene& rays, const BodyMesh& mesh, std::u
     tbb::enumerable_thread_specific<GatherWorkspace> workspaces;
     tbb::task_arena arena(static_cast<int>(thread_count(context)));
     const auto gather_texel = [&](std::size_t j) {
-        if (context.cancelled()) {
-            return;
-        }
+        if (context.cancelled()) return;
         GatherWorkspace& work = workspaces.local();
         work.value.assign(stride * points.size(), 0.0f);
         for (std::size_t i = 0; i < texels[j].size(); ++i) {

@@ -105,9 +105,7 @@ void draw_triangles(const Target& target) {
             pixel_span(lesser(lesser(a.y, b.y), c.y), greater(greater(a.y, b.y), c.y), size);
         const Span columns =
             pixel_span(lesser(lesser(a.x, b.x), c.x), greater(greater(a.x, b.x), c.x), size);
-        if (rows.begin >= rows.end || columns.begin >= columns.end) {
-            continue;
-        }
+        if (rows.begin >= rows.end || columns.begin >= columns.end) continue;
         const Planes planes = planes_of(abx, aby, abz, acx, acy, acz, area);
         const bool front = area > 0 && id < t.body_triangles;
         draw(planes, a, rows, columns, id, t.size, front ? t.front_z : t.obstacle_z,

@@ -138,9 +138,7 @@ LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 p, fl
     const Corner pixels = nearest_pixels(view, p);
     const Above blocked = passes_above(mesh, view, pixels, p, margin);
     LightAnswer answer;
-    if (blocked.yes && blocked.sure) {
-        return answer;
-    }
+    if (blocked.yes && blocked.sure) return answer;
     float low = kInfinity, high = -kInfinity;
     bool all = true, known = false;
     Crossing crossing;
@@ -151,9 +149,7 @@ LightAnswer look_up(const BodyMesh& mesh, const LightView& view, glm::vec3 p, fl
             continue;
         }
         const std::uint32_t id = view.front.triangle[pixel];
-        if (id == previous) {
-            continue;
-        }
+        if (id == previous) continue;
         previous = id;
         const Crossing c = cross_triangle(mesh, view, id, p);
         if (c.holds || answer.triangle == formats::kNone) {
@@ -190,16 +186,12 @@ BodyMesh make_body_mesh(const formats::Scene& scene, const RayScene& rays, std::
     double edges = 0;
     for (const bool body : {true, false}) {
         for (const formats::Primitive& p : scene.primitives) {
-            if ((p.material == material) != body) {
-                continue;
-            }
+            if ((p.material == material) != body) continue;
             const auto base = static_cast<std::uint32_t>(mesh.position.size());
             mesh.position.insert(mesh.position.end(), p.position.begin(), p.position.end());
             for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
                 const glm::uvec3 t(p.index[i], p.index[i + 1], p.index[i + 2]);
-                if (body && inner[next++] != 0) {
-                    continue;
-                }
+                if (body && inner[next++] != 0) continue;
                 mesh.triangle.push_back(base + t);
                 if (body) {
                     edges += double{glm::distance(p.position[t.x], p.position[t.y])};

@@ -56,9 +56,7 @@ std::vector<InteriorNode> place_interior_nodes(const SingleMedium& medium, const
     for (const PathNode& node : place_path_nodes(medium.rule, medium.path, double{path.length})) {
         const float depth = static_cast<float>(node.depth);
         const std::int32_t shells = shells_at(path, depth);
-        if (shells < 1) {
-            continue;
-        }
+        if (shells < 1) continue;
         InteriorNode interior{point.position + aside - depth * point.normal, {}, shells};
         for (std::size_t c = 0; c < 3; ++c) {
             interior.weight[c] = static_cast<float>(node.weight[c]);
@@ -116,9 +114,7 @@ EntryCounts gather_single(const RayScene& rays, const DirectionSet& directions,
             const PacketEntries entries =
                 find_entries(rays, medium.material, all, packet, shells, counts);
             for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
-                if (entries.lit[lane] == 0) {
-                    continue;
-                }
+                if (entries.lit[lane] == 0) continue;
                 const Entry<float> entry = enter(entries.cosine[lane], medium.boundary);
                 const float length = entries.distance[lane] * entry.path_ratio;
                 const float lit = shares[b][lane] * entry.throughput;

@@ -209,9 +209,7 @@ double typical_rows(const formats::Medium& medium, const Knobs& knobs) {
 void warn_of_short_series(const PlanInput& input, const PlanEntry& entry,
                           std::vector<formats::Diagnostic>& warnings) {
     constexpr std::uint32_t kMostTerms = 25, kDegrees = 5;
-    if (entry.terms != kMostTerms) {
-        return;
-    }
+    if (entry.terms != kMostTerms) return;
     const formats::Medium& medium = *input.material.medium;
     const double error = phase_rms_relative(expand_phase(medium.phase, kDegrees), kMostTerms);
     if (error * share_scattered_once(medium) > input.knobs[kPhaseTolerance]) {
@@ -230,9 +228,7 @@ void warn_of_short_series(const PlanInput& input, const PlanEntry& entry,
 // No other knob can make up for too few terms of a phase function.
 void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
                   std::vector<formats::Diagnostic>& warnings) {
-    if (entry.terms == 0) {
-        return;
-    }
+    if (entry.terms == 0) return;
     warn_of_short_series(input, entry, warnings);
     const std::uint32_t needed = needed_terms(*input.material.medium, input.knobs);
     if (needed > entry.terms) {

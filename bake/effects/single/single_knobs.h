@@ -15,9 +15,7 @@ inline bool looks_inside(const RowLayout& layout, std::span<const PlanEntry>) {
 }
 inline bool is_expanded(const RowLayout&, std::span<const PlanEntry> decisions) {
     for (const PlanEntry& entry : decisions) {
-        if (entry.name == "single.terms" && entry.terms > 0) {
-            return true;
-        }
+        if (entry.name == "single.terms" && entry.terms > 0) return true;
     }
     return false;
 }

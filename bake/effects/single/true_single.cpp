@@ -36,9 +36,7 @@ std::array<double, RayPacket::kSize> trace_node(const SingleQuadrature& q, const
         find_entries(rays, q.medium.material, lanes, packet, shells, counts);
     std::array<double, RayPacket::kSize> light{};
     for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
-        if (lanes[lane] == 0 || entries.lit[lane] == 0) {
-            continue;
-        }
+        if (lanes[lane] == 0 || entries.lit[lane] == 0) continue;
         const Entry<float> entry = enter(entries.cosine[lane], q.medium.boundary);
         const auto length = static_cast<double>(entries.distance[lane] * entry.path_ratio);
         const glm::dvec3 inside = refracted_direction(

@@ -26,9 +26,7 @@ double mean_thickness(const MaterialFacts& body) {
 
 // Of even light. One row for all views shows each as much as the others.
 double allowed_share(const Knobs& knobs) {
-    if (knobs.error_target > 0) {
-        return knobs.error_target;
-    }
+    if (knobs.error_target > 0) return knobs.error_target;
     switch (knobs.quality) {
         case Quality::draft:
             return 0.5;

@@ -102,9 +102,7 @@ class Follower {
             any = any || lane.is_on_its_way;
             traced_ += lane.is_on_its_way ? 1 : 0;
         }
-        if (!any) {
-            return false;
-        }
+        if (!any) return false;
         const PacketHits hits = body_.rays->closest(mask, packet);
         for (std::uint32_t i = 0; i < kLanes; ++i) {
             if (mask[i] != 0) {

@@ -129,17 +129,13 @@ std::uint32_t straight_terms(const RowLayout& layout) {
 std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
                            std::uint64_t seed, const RowLayout& layout, const DenseRow& row,
                            const OtherLight* surfaces) {
-    if (point.normal == glm::vec3(0)) {
-        return 0;
-    }
+    if (point.normal == glm::vec3(0)) return 0;
     std::uint64_t rays = 0;
     const PointViews own = follow_views(body, point, views, seed, rays);
     const auto& set = own.set;
     const auto& found = own.found;
     const bool sees_surfaces = surfaces != nullptr && surfaces->add_seen && !found.blocked.empty();
-    if (found.exits.empty() && !sees_surfaces) {
-        return rays;
-    }
+    if (found.exits.empty() && !sees_surfaces) return rays;
     const std::uint32_t terms = straight_terms(layout);
     std::vector<float> factors = fit_views(set, terms);
     if (terms == 1) {
@@ -184,9 +180,7 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
 CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
                            std::uint64_t seed, std::uint64_t& rays) {
     CrossingViews crossing{{}, solid_angle_of(views)};
-    if (point.normal == glm::vec3(0)) {
-        return crossing;
-    }
+    if (point.normal == glm::vec3(0)) return crossing;
     const PointViews own = follow_views(body, point, views, seed, rays);
     const double leaves = 1 - fresnel_moments(body.eta).external;
     crossing.views.reserve(own.found.blocked.size());

@@ -96,9 +96,7 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
                                 std::uint32_t key, std::uint64_t& traced) {
     const std::size_t lights = truth.lights.size();
     TwoEstimates estimates{Luminance(lights), Luminance(lights)};
-    if (point.normal == glm::vec3(0)) {
-        return estimates;
-    }
+    if (point.normal == glm::vec3(0)) return estimates;
     const ViewKernel kernel(point.normal, body.eta, truth.terms,
                             toward == glm::vec3(0) ? point.normal : toward);
     const double mean = 1 - fresnel_moments(body.eta).external;
@@ -118,9 +116,7 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
             const auto u = random_uniform(seed, RandomStage::true_straight_views, key, number);
             const double c = std::sqrt(1 - (i + static_cast<double>(u[0])) / truth.views);
             const double passed = fresnel_transmittance(c, body.eta);
-            if (!(passed > 0)) {
-                continue;
-            }
+            if (!(passed > 0)) continue;
             const double inside = refracted_cosine(c, body.eta);
             const double sine = std::sqrt(1 - inside * inside);
             const double azimuth = 2 * std::numbers::pi * static_cast<double>(u[1]);
@@ -135,9 +131,7 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
         for (const std::uint32_t i : found.past) {
             left -= share[i];
         }
-        if (!(left > 0)) {
-            continue;
-        }
+        if (!(left > 0)) continue;
         for (const StraightExit& exit : found.exits) {
             add_light(truth, exit.direction,
                       weight[exit.view] / left * luminance_of(exit, body.bands), random[exit.view],
@@ -251,9 +245,7 @@ void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>&
     constexpr double kWorthSaying = 0.1;
     const MaterialFacts& facts = inputs.bake.facts.material[inputs.material];
     const double share = typical_share(inputs.medium(), facts);
-    if (share < kWorthSaying) {
-        return;
-    }
+    if (share < kWorthSaying) return;
     const std::uint32_t terms = straight_terms(inputs.layout);
     warnings.push_back(formats::make_warning(
         "", "material '" + inputs.bake.scene.materials[inputs.material].name + "'",

@@ -103,9 +103,7 @@ TransmissionViews spread_views(glm::vec3 normal, double eta, std::uint32_t count
     for (std::uint32_t i = 0; i < count; ++i) {
         const double c = std::sqrt(1 - (i + static_cast<double>(shift.x)) / count);
         const double weight = fresnel_transmittance(c, eta);
-        if (!(weight > 0)) {
-            continue;
-        }
+        if (!(weight > 0)) continue;
         const double inside = refracted_cosine(c, eta), sine = std::sqrt(1 - inside * inside);
         const double turn = i * golden + static_cast<double>(shift.y);
         const double azimuth = 2 * std::numbers::pi * (turn - std::floor(turn));
@@ -179,9 +177,7 @@ void limit_fit(const TransmissionViews& views, std::uint32_t terms, std::span<co
     }
     constexpr double kRounding = 0.01;  // of the mean
     floor = std::min(floor, mean) - kRounding * mean;
-    if (darkest >= floor) {
-        return;
-    }
+    if (darkest >= floor) return;
     const auto scale = static_cast<float>((mean - floor) / (mean - darkest));
     const double first = 0.5 * std::numbers::inv_sqrtpi;
     for (std::size_t i = 0; i < even.size(); ++i) {
@@ -195,9 +191,7 @@ void limit_fit(const TransmissionViews& views, std::uint32_t terms, std::span<co
 }
 
 ViewKernel::ViewKernel(glm::vec3 normal, double eta, std::uint32_t terms, glm::vec3 seen) {
-    if (terms == 1) {
-        return;
-    }
+    if (terms == 1) return;
     constexpr std::uint32_t kViews = 2048;
     Harmonics h = centre_harmonics(spread_views(normal, eta, kViews, {0.5f, 0}), terms);
     std::vector<double> own(terms);

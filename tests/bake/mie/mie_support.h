@@ -32,9 +32,7 @@ inline std::complex<double> water_at(double nm) {
 inline const bake::DropletOptics& paper_optics(double nm, std::complex<double> index) {
     static std::map<std::tuple<double, double, double>, bake::DropletOptics> known;
     const std::tuple key(nm, index.real(), index.imag());
-    if (const auto found = known.find(key); found != known.end()) {
-        return found->second;
-    }
+    if (const auto found = known.find(key); found != known.end()) return found->second;
     auto optics = bake::average_droplets(paper_droplets(), nm * 1e-9, index, {}, {});
     EXPECT_TRUE(optics.has_value()) << nm;
     return known[key] = optics ? std::move(*optics) : bake::DropletOptics{};

@@ -198,9 +198,7 @@ TEST(PathDifferentialTable, EveryRowOfAnEventIsReproduced) {
     std::map<std::string, int> reproduced;
     for (const DifferentialCase& row : read_differential_cases()) {
         const auto found = events.find(row.event);
-        if (found == events.end() || (row.in.contains("map") && row.number("map") == 0)) {
-            continue;
-        }
+        if (found == events.end() || (row.in.contains("map") && row.number("map") == 0)) continue;
         const NamedValues computed = found->second(row);
         EXPECT_EQ(computed.empty(), row.out.empty()) << row.event << " " << row.name;
         ++reproduced[row.event];

@@ -16,9 +16,7 @@ TEST(DiskMap, ColumnsAreDerivativesAndSpanTheAreaOfTheDisk) {
     tests::AreaErrors areas;
     for (int i = 0; i < tests::kRandomCases; ++i) {
         const double u = random.uniform(), v = random.uniform(0.01, 1);
-        if (tests::is_near_diagonal(u, v)) {
-            continue;
-        }
+        if (tests::is_near_diagonal(u, v)) continue;
         const DiskPoint at = map_to_disk(u, v);
         const auto point = [&](auto du, auto dv) {
             using S = decltype(du + dv);

@@ -46,9 +46,7 @@ void check_lobes(Lobe::Kind kind, double least, double most, double tolerance) {
     for (int i = 0; i < tests::kRandomCases; ++i) {
         const Lobe lobe{kind, random.uniform(least, most)};
         const double u = random.uniform(0.001, 0.999), v = random.uniform(0.01, 0.98);
-        if (tests::is_near_diagonal(u, v)) {
-            continue;
-        }
+        if (tests::is_near_diagonal(u, v)) continue;
         const LobeDirection sample = sample_lobe(lobe, u, v);
         areas.add(sample.dD_du, sample.dD_dv, textbook_pdf(lobe, sample.D.z));
         along =

@@ -142,9 +142,7 @@ TEST(PathDifferential, FacetsOfAFlatSurfaceAreDerivatives) {
             PathDifferential path;
             add_variable(path, {kStill, dD, 0, 1e-6});
             const auto out = scatter_on_facets(path, unlimited_rules(), event);
-            if (!out) {
-                continue;
-            }
+            if (!out) continue;
             ++sampled;
             const glm::dmat3 frame = frame_around(N);
             const auto direction = [&](auto x) {

@@ -23,9 +23,7 @@ double hull_area(std::vector<glm::dvec2> points) {
         for (const glm::dvec2& p : points) {
             while (chain.size() > 1) {
                 const glm::dvec2 a = chain[chain.size() - 2], b = chain.back();
-                if (side * ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) > 0) {
-                    break;
-                }
+                if (side * ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) > 0) break;
                 chain.pop_back();
             }
             chain.push_back(p);

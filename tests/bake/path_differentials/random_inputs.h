@@ -23,18 +23,14 @@ class RandomInputs {
         for (;;) {
             const glm::dvec3 v = vector();
             const double length = glm::length(v);
-            if (length > 0.1 && length < 1) {
-                return v / length;
-            }
+            if (length > 0.1 && length < 1) return v / length;
         }
     }
     /// A unit vector whose dot with `other` is at least `least`.
     glm::dvec3 unit_facing(const glm::dvec3& other, double least) {
         for (;;) {
             const glm::dvec3 v = unit();
-            if (glm::dot(v, other) >= least) {
-                return v;
-            }
+            if (glm::dot(v, other) >= least) return v;
         }
     }
     /// A change of a unit vector.

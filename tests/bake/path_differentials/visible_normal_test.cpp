@@ -34,9 +34,7 @@ FacetInputs random_facet(tests::RandomInputs& random) {
         in.v = random.uniform(0.02, 0.97);
         in.eta = random.uniform(0.5, 0.9);
         const double q = map_to_disk(in.u, in.v).q;
-        if (q > 0.02 && q < 0.97 && !tests::is_near_diagonal(in.u, in.v)) {
-            return in;
-        }
+        if (q > 0.02 && q < 0.97 && !tests::is_near_diagonal(in.u, in.v)) return in;
     }
 }
 

@@ -23,9 +23,7 @@ std::vector<SurfaceSample> scattered(std::size_t count) {
 // In every node, no sample of the second child lies before one of the first along the longest side.
 void expect_split(std::span<const SurfaceSample> samples, std::span<const std::uint32_t> order) {
     const auto count = static_cast<std::uint32_t>(order.size());
-    if (count <= kSamplesPerLeaf) {
-        return;
-    }
+    if (count <= kSamplesPerLeaf) return;
     const std::uint32_t half = first_child_count(count);
     ASSERT_GT(half, 0u);
     ASSERT_LT(half, count);

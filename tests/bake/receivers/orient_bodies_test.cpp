@@ -20,17 +20,13 @@ Scene wax(std::vector<Primitive> primitives) {
 
 // True if two surfaces have the same triangles, up to rotation of their corners.
 bool same_triangles(const Primitive& a, const Primitive& b) {
-    if (a.index.size() != b.index.size()) {
-        return false;
-    }
+    if (a.index.size() != b.index.size()) return false;
     for (std::size_t i = 0; i < a.index.size(); i += 3) {
         const std::uint32_t *s = &a.index[i], *t = &b.index[i];
         const bool same = (s[0] == t[0] && s[1] == t[1] && s[2] == t[2]) ||
                           (s[0] == t[1] && s[1] == t[2] && s[2] == t[0]) ||
                           (s[0] == t[2] && s[1] == t[0] && s[2] == t[1]);
-        if (!same) {
-            return false;
-        }
+        if (!same) return false;
     }
     return true;
 }

@@ -96,9 +96,7 @@ TEST(PathFilter, AnEventSpreadsItsDensityOverTheSurface) {
         if (glossy) {
             const float u = random.next(), v = random.next();
             const auto sample = bake::sample_mirrored(brdf, u, v);
-            if (!sample) {
-                continue;
-            }
+            if (!sample) continue;
             out = sample->direction;
             pdf = static_cast<double>(sample->pdf);
             filter.scatter_on_facets(in, normal, static_cast<float>(brdf.alpha), out);

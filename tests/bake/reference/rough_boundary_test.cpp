@@ -70,9 +70,7 @@ double albedo_by_normals(double alpha, double n, double cosine, bool reflected) 
             const double phi = std::numbers::pi * (j + 0.5) / kSteps;
             const glm::dvec3 h(r * std::cos(phi), r * std::sin(phi), z);
             const double c = glm::dot(o, h);
-            if (!(c > 0)) {
-                continue;
-            }
+            if (!(c > 0)) continue;
             const double sine_t = std::sqrt(1 - c * c) / n;
             double fresnel = 1, c_t = 0;
             if (sine_t < 1) {

@@ -19,9 +19,7 @@ namespace {
 // of `density`, exactly.
 double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, double ell,
                        double cosine) {
-    if (!(ell > 0)) {
-        return eval_phase(density, cosine);
-    }
+    if (!(ell > 0)) return eval_phase(density, cosine);
     // Of those scattered at all, the share that is scattered once: its series converges slowest.
     const double once = ell * std::exp(-ell) / -std::expm1(-ell);
     std::vector<double> rest;
@@ -77,9 +75,7 @@ TEST(PoissonPhase, DensitiesAreThoseOfTheTable) {
     const PhaseDensity other = make_phase_density(tests::hg(0.5));
     for (const auto& row : rows) {
         const double g = row.number("g"), ell = row.number("arg"), cosine = row.number("lx");
-        if (g < 0) {
-            continue;
-        }
+        if (g < 0) continue;
         const double once = ell * std::exp(-ell) / -std::expm1(-ell);
         const double value =
             eval_after_many(other, expand_henyey_greenstein(g, 1024), ell, cosine) +
@@ -95,9 +91,7 @@ TEST(PoissonPhase, OfBackwardScatteringTheTableHasEightDegrees) {
     int count = 0;
     for (const auto& row : rows) {
         const double g = row.number("g"), ell = row.number("arg"), cosine = row.number("lx");
-        if (g >= 0) {
-            continue;
-        }
+        if (g >= 0) continue;
         const auto sum = [&](unsigned degrees) {
             std::vector<double> moments;
             for (const double lambda : expand_henyey_greenstein(g, degrees).lambda) {

@@ -86,9 +86,7 @@ TEST(PhaseTerms, HalfSpaceAgreesWithTheTruncatedPhaseFunction) {
             const DirectionBlock& block = cone.blocks[0];
             const glm::dvec3 w(block.dir_x[lane], block.dir_y[lane], block.dir_z[lane]);
             const Entry<double> e = enter(w.y, Interface<double>{double{kEta}, true});
-            if (!(e.throughput > 0)) {
-                continue;
-            }
+            if (!(e.throughput > 0)) continue;
             const glm::dvec3 inside = refracted_direction(w, {0, 1, 0}, double{kEta});
             const double phase = kIsotropic * (1 - 3 * double{kG} * glm::dot(inside, view));
             expected += double{kSigmaS / kSigmaT} * e.throughput * phase /

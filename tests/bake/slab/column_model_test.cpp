@@ -22,9 +22,7 @@ TEST(ColumnModelTest, HoldsThePrintedParametersOfThePaper) {
         const std::string& quantity = row.text("quantity");
         bool found = false;
         for (double degrees = 0; degrees <= 90; degrees += 10) {
-            if (row.number_or("theta_l_deg", degrees) != degrees) {
-                continue;
-            }
+            if (row.number_or("theta_l_deg", degrees) != degrees) continue;
             const ColumnModel m = bake::paper2006_at(degrees);
             const std::map<std::string, double> value = {
                 {"b", m.length / (1 + m.length)}, {"beta", m.beta}, {"c_per_m", m.decay},

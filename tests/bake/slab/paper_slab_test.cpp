@@ -57,9 +57,7 @@ const SlabSolution& solved(const CloudRow& row) {
     const double depth = row.number("kappa_per_m") * row.number("H_m");
     const std::tuple key(row.text("case"), depth, row.number("theta_l_deg"));
     const auto found = known.find(key);
-    if (found != known.end()) {
-        return found->second;
-    }
+    if (found != known.end()) return found->second;
     const bool modified = row.text("case") == "modified";
     return known[key] = solve_one(modified ? paper_cloud().modified : paper_cloud().full, depth,
                                   cosine_of_degrees(row.number("theta_l_deg")), modified ? 3 : 0,
@@ -70,9 +68,7 @@ double share_of(const SlabSolution& slab, const std::string& quantity, const std
     const auto side = [&](const bake::SlabFluxes& f) {
         return quantity == "R" ? f.reflectance[0] : f.transmittance[0];
     };
-    if (order == "total") {
-        return side(slab.total);
-    }
+    if (order == "total") return side(slab.total);
     if (order == "3+") {
         return side(slab.total) - side(slab.order[0]) - side(slab.order[1]) - side(slab.order[2]);
     }

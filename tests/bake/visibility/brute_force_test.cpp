@@ -72,9 +72,7 @@ TEST(BruteForce, DenseDoublePrecisionAgreesWithThePipelineToOnePartIn100000) {
             const std::uint32_t face = s / (4 * n * n), i = s / (2 * n) % (2 * n), j = s % (2 * n);
             const double step = 1.0 / n, u = j * step - 1, v = i * step - 1;
             const double cosine = cosine_integral(normal, face, u, v, step);
-            if (cosine <= 0) {
-                continue;
-            }
+            if (cosine <= 0) continue;
             const formats::Vec3 w = formats::cube_position(
                 {face, static_cast<float>(u + step / 2), static_cast<float>(v + step / 2)});
             const bool blocked =

@@ -59,9 +59,7 @@ inline double brute_force_distance(const Scene& scene, glm::dvec3 origin, glm::d
             const glm::dvec3 ab = corner(1) - corner(0), ac = corner(2) - corner(0);
             const glm::dvec3 from = origin - corner(0), p = glm::cross(d, ac);
             const double determinant = glm::dot(ab, p);
-            if (determinant == 0) {
-                continue;
-            }
+            if (determinant == 0) continue;
             const double u = glm::dot(from, p) / determinant;
             const glm::dvec3 q = glm::cross(from, ab);
             const double v = glm::dot(d, q) / determinant, t = glm::dot(ac, q) / determinant;

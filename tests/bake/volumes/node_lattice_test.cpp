@@ -22,9 +22,7 @@ TEST_P(NodeLatticeOf, EveryPointWithDensityStandsBetweenEightNodesWhoseMeanPlace
     for (int i = 0; i < 400; ++i) {
         const glm::vec3 index =
             40.0f * (glm::vec3(uniform(engine), uniform(engine), uniform(engine)) - 0.5f);
-        if (grid.sample(index) <= 0) {
-            continue;
-        }
+        if (grid.sample(index) <= 0) continue;
         ++inside;
         const NodesAround around = nodes_around(lattice, index);
         ASSERT_TRUE(around.found);
@@ -50,9 +48,7 @@ TEST_P(NodeLatticeOf, NodesStandWhereTheirCornersSay) {
     ASSERT_EQ(lattice.corner.size(), lattice.brick.size() * corners);
     std::set<std::uint32_t> used;
     for (std::size_t i = 0; i < lattice.corner.size(); ++i) {
-        if (lattice.corner[i] == formats::kNoNode) {
-            continue;
-        }
+        if (lattice.corner[i] == formats::kNoNode) continue;
         used.insert(lattice.corner[i]);
         const std::size_t c = i % corners;
         const glm::ivec3 at = 8 * lattice.brick[i / corners] +

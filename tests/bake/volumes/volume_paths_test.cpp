@@ -112,9 +112,7 @@ ClassRatios compare_with_walks(const formats::Volume& volume) {
     std::array<double, 4> paths{}, walks{};
     std::vector<float> by_paths(kTerms * size), by_walks(kTerms * size);
     for (std::size_t node = 0; node < nodes; node += nodes / 12) {
-        if (glm::length(lit.position(node)) > 0.9f) {
-            continue;
-        }
+        if (glm::length(lit.position(node)) > 0.9f) continue;
         gather_paths(space, {0, node, lit.position(node), 48, kTerms}, by_paths);
         gather_walks(walk, {0, node, lit.position(node), 4000, kTerms}, by_walks);
         for (std::size_t v = 0; v < size; ++v) {

@@ -118,9 +118,7 @@ TEST(ExitLobe, OfLightScatteredOftenRemembersTheWayOfTheWalk) {
         tests::visit_walks(
             slab->space, tests::start_below({0, 0, 0}, up), {2}, kWalks, [&](const auto& exits) {
                 for (const WalkExit& exit : exits) {
-                    if (!(exit.turned >= 1 && exit.normal.y > 0.5f)) {
-                        continue;
-                    }
+                    if (!(exit.turned >= 1 && exit.normal.y > 0.5f)) continue;
                     const glm::vec3 along(exit.drift.x, 0, exit.drift.z);
                     const glm::vec3 way = exit.weight[0] * along;
                     const ExitDirection known = lobe.direction(up, exit);

@@ -34,9 +34,7 @@ double half_space_reflectance(double albedo, double g, Light light) {
             }
             weight *= albedo;
             if (weight < 0.05) {
-                if (uniform(generator) > 0.1) {
-                    break;
-                }
+                if (uniform(generator) > 0.1) break;
                 weight *= 10;
             }
             const double u = uniform(generator);

@@ -394,9 +394,7 @@ TEST(GltfTranslucency, ReplacedValuesGiveASoundMediumOrAMessage) {
             Json damaged = whole;
             damaged[Json::json_pointer(path)] = value;
             const auto result = import_asset(asset_with(damaged));
-            if (!result || !result->scene.materials.at(0).medium) {
-                continue;
-            }
+            if (!result || !result->scene.materials.at(0).medium) continue;
             const Medium& medium = *result->scene.materials[0].medium;
             float sum = 0;
             for (const formats::Rgb sigma : {medium.sigma_s, medium.sigma_a}) {

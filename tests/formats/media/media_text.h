@@ -54,9 +54,7 @@ inline bool is_sound(const formats::Medium& medium) {
     float sum = 0;
     for (const formats::Rgb sigma : {medium.sigma_s, medium.sigma_a}) {
         for (const float band : {sigma.r, sigma.g, sigma.b}) {
-            if (!(std::isfinite(band) && band >= 0)) {
-                return false;
-            }
+            if (!(std::isfinite(band) && band >= 0)) return false;
             sum += band;
         }
     }

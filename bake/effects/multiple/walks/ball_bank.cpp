@@ -107,9 +107,7 @@ BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
                 own += part.events;
                 records.insert(records.end(), part.record.begin(), part.record.end());
             });
-        if (records.size() < BallBank::kRecords) {
-            break;
-        }
+        if (records.size() < BallBank::kRecords) break;
         events += own;
         of_next =
             own * std::exp2(2 / kStepsPerOctave);  // in proportion to the square of the radius
@@ -124,9 +122,7 @@ PhaseTable make_phase_table(const formats::PhaseFunction& phase) {
     PhaseTable table;
     table.type = phase.type;
     table.g = static_cast<double>(phase.g);
-    if (phase.type == Type::isotropic || phase.type == Type::henyey_greenstein) {
-        return table;
-    }
+    if (phase.type == Type::isotropic || phase.type == Type::henyey_greenstein) return table;
     // Steps of s, cosine = 1 - 2 s^2: fine where functions have their peak. p dcosine = 4 s p ds.
     constexpr std::size_t kFineSteps = 65536, kStored = 4096;
     const PhaseDensity density = make_phase_density(phase);
@@ -151,9 +147,7 @@ PhaseTable make_phase_table(const formats::PhaseFunction& phase) {
 }
 
 double mean_cosine(const PhaseTable& table) {
-    if (table.cosine.empty()) {
-        return table.g;
-    }
+    if (table.cosine.empty()) return table.g;
     double sum = 0;
     for (std::size_t i = 0; i + 1 < table.cosine.size(); ++i) {
         sum += 0.5 * static_cast<double>(table.cosine[i] + table.cosine[i + 1]);

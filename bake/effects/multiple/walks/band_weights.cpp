@@ -86,9 +86,7 @@ bool BandWeights::reweigh(const PerGroup& light, const PerGroup& density) {
         sum += density_[g];
     }
     constexpr float kLeast = 1e-30f;  // smaller probabilities underflow
-    if (!(sum > kLeast)) {
-        return false;
-    }
+    if (!(sum > kLeast)) return false;
     for (float& d : density_) {
         d /= sum;
     }
@@ -101,9 +99,7 @@ bool BandWeights::reweigh(const PerGroup& light, const PerGroup& density) {
 bool BandWeights::fly(float length, bool collides) {
     if (groups_ > 1) {
         const PerGroup factors = flight_factors(length, collides, 1);
-        if (!reweigh(factors, factors)) {
-            return false;
-        }
+        if (!reweigh(factors, factors)) return false;
     }
     return !medium_->absorbs_in_flight || absorb_in_flight(length);
 }
@@ -121,9 +117,7 @@ bool BandWeights::cross_ball(float length, float scatterings) {
         for (float& factor : factors) {
             factor = std::exp(std::min(kMostExponent, factor - most));
         }
-        if (!reweigh(factors, factors)) {
-            return false;
-        }
+        if (!reweigh(factors, factors)) return false;
     }
     for (std::size_t b = 0; b < 3; ++b) {
         if (own_[b] > 0) {
@@ -217,13 +211,9 @@ bool BandWeights::survives(float u) {
         chance[g] = survival_chance(g);
         risks |= chance[g] < 1;
     }
-    if (!risks) {
-        return true;
-    }
+    if (!risks) return true;
     const float own = chance[flies_as_];
-    if (!(u < own)) {
-        return false;
-    }
+    if (!(u < own)) return false;
     for (std::size_t g = 0; g < groups_; ++g) {
         light[g] = 1 / own;
         density[g] = chance[g] / own;

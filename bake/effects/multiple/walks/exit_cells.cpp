@@ -126,9 +126,7 @@ ExitCells::Table ExitCells::make_table(glm::vec3 normal, std::span<const Part> p
         mean += value[cell];
     }
     Table table{};
-    if (!(all > 0)) {
-        return table;
-    }
+    if (!(all > 0)) return table;
     mean /= all;
     // Leave out cells that share only an edge with the cone of entering light.
     constexpr double kLeast = 1e-5;

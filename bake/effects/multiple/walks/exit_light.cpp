@@ -94,9 +94,7 @@ std::uint32_t ExitLight::nearest(const WalkExit& exit, std::vector<std::uint32_t
     }
     grid_.collect_around(key, around);
     const std::uint32_t near = search(around);
-    if (near != formats::kNone) {
-        return near;
-    }
+    if (near != formats::kNone) return near;
     around.resize(samples_.size());
     for (std::uint32_t j = 0; j < samples_.size(); ++j) {
         around[j] = j;
@@ -113,9 +111,7 @@ glm::vec4 ExitLight::weigh(std::uint32_t sample, const WalkExit& exit, float sca
 void ExitLight::add_exit(std::uint32_t sample, const WalkExit& exit, float scale,
                          ExitCells::Sums& sums) const {
     const SurfaceSample& s = samples_[sample];
-    if (!(s.area > 0)) {
-        return;
-    }
+    if (!(s.area > 0)) return;
     const glm::vec4 weight = weigh(sample, exit, scale);
     if (cells_) {
         cells_->add_exit(sample, cells_->lobe().direction(s.normal, exit), weight, sums);
@@ -143,9 +139,7 @@ void ExitLight::add_cells(const ExitCells::Cells& cells, const TexelRow& row) co
 
 void ExitLight::add_diffuse(std::uint32_t sample, const glm::vec4& weight,
                             const TexelRow& row) const {
-    if (other_ == nullptr) {
-        return;
-    }
+    if (other_ == nullptr) return;
     const SparseVector entries = (*other_)[sample];
     const glm::length_t bands = row.step == 1 ? 1 : 3;
     for (std::size_t i = 0; i < entries.index.size(); ++i) {

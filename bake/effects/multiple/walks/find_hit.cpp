@@ -63,26 +63,16 @@ struct NearestTriangle {
 float squared_distance(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
     const glm::vec3 ab = b - a, ac = c - a;
     const float d1 = -glm::dot(ab, a), d2 = -glm::dot(ac, a);
-    if (d1 <= 0 && d2 <= 0) {
-        return glm::dot(a, a);
-    }
+    if (d1 <= 0 && d2 <= 0) return glm::dot(a, a);
     const float d3 = -glm::dot(ab, b), d4 = -glm::dot(ac, b);
-    if (d3 >= 0 && d4 <= d3) {
-        return glm::dot(b, b);
-    }
+    if (d3 >= 0 && d4 <= d3) return glm::dot(b, b);
     const auto square = [](glm::vec3 v) { return glm::dot(v, v); };
     const float vc = d1 * d4 - d3 * d2;
-    if (vc <= 0 && d1 >= 0 && d3 <= 0) {
-        return square(a + d1 / (d1 - d3) * ab);
-    }
+    if (vc <= 0 && d1 >= 0 && d3 <= 0) return square(a + d1 / (d1 - d3) * ab);
     const float d5 = -glm::dot(ab, c), d6 = -glm::dot(ac, c);
-    if (d6 >= 0 && d5 <= d6) {
-        return glm::dot(c, c);
-    }
+    if (d6 >= 0 && d5 <= d6) return glm::dot(c, c);
     const float vb = d5 * d2 - d1 * d6;
-    if (vb <= 0 && d2 >= 0 && d6 <= 0) {
-        return square(a + d2 / (d2 - d6) * ac);
-    }
+    if (vb <= 0 && d2 >= 0 && d6 <= 0) return square(a + d2 / (d2 - d6) * ac);
     const float va = d3 * d6 - d5 * d4;
     if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
         return square(b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b));
@@ -101,9 +91,7 @@ bool look_at_triangle(RTCPointQueryFunctionArguments* arguments) {
     const float square = squared_distance(p.position[corner[0]] - nearest.position,
                                           p.position[corner[1]] - nearest.position,
                                           p.position[corner[2]] - nearest.position);
-    if (!(square < nearest.square)) {
-        return false;
-    }
+    if (!(square < nearest.square)) return false;
     nearest.square = square;
     arguments->query->radius = std::sqrt(square);
     return true;
@@ -122,9 +110,7 @@ bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, flo
     ray.ray.mask = 0xffffffffu;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(space.triangles->handle(), &context, &ray);
-    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-        return false;
-    }
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     hit = describe_hit(space,
                        {ray.hit.geomID,
                         ray.hit.primID,

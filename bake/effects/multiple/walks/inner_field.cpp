@@ -188,9 +188,7 @@ void InnerField::weigh(const WalkSpace& space, const BodyPoint& point, const Vie
         centre.direction += weight * node.direction;
         sum += weight;
     }
-    if (!(sum > 0) || empty()) {
-        return;
-    }
+    if (!(sum > 0) || empty()) return;
     centre.position /= sum;
     centre.direction /= sum;
     const std::vector<Neighbour> neighbours = collect(space, point, centre);

@@ -64,9 +64,7 @@ EvenViews even_views(std::span<const float> row, std::span<const float> rows, st
     const glm::dvec3 first(of(0), of(1), of(2));
     views.straight = glm::dot(first, normal);
     views.across = first - views.straight * normal;
-    if (rows.size() == kFirstDegree * row.size()) {
-        return views;
-    }
+    if (rows.size() == kFirstDegree * row.size()) return views;
     glm::dmat3 form(0);
     for (std::uint32_t r = kFirstDegree; r < kAllDegrees; ++r) {
         form += of(r) * glm::dmat3(second_harmonic(r + 1));
@@ -106,9 +104,7 @@ ViewLimit limit_views(std::span<const float> row, std::span<const float> rows, s
         apart.first = std::min(apart.first, views.most_of(fit, none, least(1, 0)));
     }
     together.second = together.first;
-    if (together.first >= apart.first) {
-        return together;
-    }
+    if (together.first >= apart.first) return together;
     for (std::uint32_t band = 0; band < bands; ++band) {
         const EvenViews views = even_views(row, rows, stride, band, glm::dvec3(normal));
         const auto first = [&](double c) {

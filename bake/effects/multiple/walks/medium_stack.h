@@ -24,9 +24,7 @@ class MediumStack {
             ++entry_[size_ - 1].bodies;
             return true;
         }
-        if (size_ == kCapacity) {
-            return false;
-        }
+        if (size_ == kCapacity) return false;
         entry_[size_++] = {medium, 1};
         return true;
     }

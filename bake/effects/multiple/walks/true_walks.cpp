@@ -53,9 +53,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                             std::uint64_t& traced) {
     const std::size_t lights = light.smooth.lights;
     TwoEstimates estimates{Luminance(lights), Luminance(lights)};
-    if (point.normal == glm::vec3(0) || space.bands.empty()) {
-        return estimates;
-    }
+    if (point.normal == glm::vec3(0) || space.bands.empty()) return estimates;
     const bool is_grey = space.is_grey;
     // As many walks fly as a group as the eye sees of it.
     WalkGroup group{0, {}};
@@ -103,9 +101,7 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                     exit = &e;
                 }
             }
-            if (exit == nullptr) {
-                continue;
-            }
+            if (exit == nullptr) continue;
             const SurfaceSample at = make_surface_sample(
                 *space.scene,
                 make_surface_point(*space.scene, {exit->primitive, exit->first_index},

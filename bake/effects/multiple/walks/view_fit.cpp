@@ -90,9 +90,7 @@ ViewLobe eval_view_lobe(const ViewFit& fit, glm::vec3 normal, glm::vec3 seen, bo
     const auto along = static_cast<float>((c - fit.mean) / fit.variance);
     const glm::vec3 first = along * normal + t / static_cast<float>(fit.across);
     ViewLobe lobe{first.x, first.y, first.z};
-    if (!second) {
-        return lobe;
-    }
+    if (!second) return lobe;
     // The square of every B is 15 / (8 pi), so a quadratic form S has coefficients
     // (8 pi / 15) S : B.
     constexpr double kForm = 8 * std::numbers::pi / 15;

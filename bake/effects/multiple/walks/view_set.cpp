@@ -71,9 +71,7 @@ ViewSet make_view_set(const ViewFit& fit, double eta, glm::vec3 normal, std::uin
     constexpr double kRidge = 1e-3;  // refracted views hardly separate some functions
     ViewSet views;
     add_entering(eta, normal, views);
-    if (rows == 1) {
-        return views;
-    }
+    if (rows == 1) return views;
     views.into.push_back(-normal);
     views.share.push_back({});
     const Functions functions = eval_functions(fit, normal, views, rows - 1);

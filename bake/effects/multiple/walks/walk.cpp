@@ -25,17 +25,13 @@ float transmittance(float cosine, float eta) {
 // Into the half space below both normals. Refracted by the smooth one; where that leads above the
 // facet, by the facet's.
 glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRandom& random) {
-    if (start.seen != glm::vec3(0)) {
-        return -start.seen;
-    }
+    if (start.seen != glm::vec3(0)) return -start.seen;
     float cosine = 1, azimuth = 0;
     constexpr int kMostTries = 1000;  // one in a hundred is accepted at the most extreme index
     for (int i = 0; i < kMostTries; ++i) {
         cosine = std::sqrt(1 - random.next());
         azimuth = 2 * kPi * random.next();
-        if (random.next() < transmittance(cosine, space.eta)) {
-            break;
-        }
+        if (random.next() < transmittance(cosine, space.eta)) break;
         cosine = 1;
     }
     const auto inside = static_cast<float>(
@@ -90,9 +86,7 @@ class Walk {
     void go_on(std::uint32_t event) {
         for (; event < space_.most_events; ++event) {
             ++counts_.events;
-            if (!(may_jump() ? jump() : fly(flight_length()))) {
-                return;
-            }
+            if (!(may_jump() ? jump() : fly(flight_length()))) return;
         }
         give_up(counts_.endless);
     }
@@ -110,19 +104,13 @@ class Walk {
     // the nearest triangle, unless the walk cannot have gone far enough from one.
     bool may_jump() {
         const BallBank* const bank = balls();
-        if (bank == nullptr || !(weight_.sigma_t() > 0)) {
-            return false;
-        }
+        if (bank == nullptr || !(weight_.sigma_t() > 0)) return false;
         const float least = bank->least() / weight_.sigma_t();
         clearance_ = clearance();
-        if (clearance_ >= least) {
-            return true;
-        }
+        if (clearance_ >= least) return true;
         constexpr float kCoarse = 3, kWorth = 3;  // measured: a search costs five flights
         const float most = free_.most(position_);
-        if (!(space_.cell * weight_.sigma_t() > kCoarse) || most < kWorth * least) {
-            return false;
-        }
+        if (!(space_.cell * weight_.sigma_t() > kCoarse) || most < kWorth * least) return false;
         const float reach = std::min(1.00001f * most, bank->largest() / weight_.sigma_t());
         ++counts_.searches;
         const float distance = find_clearance(space_, position_, reach);
@@ -174,9 +162,7 @@ class Walk {
     // not counted: half of the walks scatter before the first surface (BandWeights).
     bool fly_first() {
         const float reach = weight_.first_reach();
-        if (space_.clearance(position_) >= reach) {
-            return fly(flight_length());
-        }
+        if (space_.clearance(position_) >= reach) return fly(flight_length());
         WalkHit hit;
         ++counts_.rays;
         // Beyond another medium's surface the walk may still scatter.
@@ -202,9 +188,7 @@ class Walk {
                 return weight_.fly(glm::distance(hit.position, position_), false) && arrive(hit);
             }
         }
-        if (!(length < kForever)) {
-            return give_up(counts_.lost);
-        }
+        if (!(length < kForever)) return give_up(counts_.lost);
         return weight_.fly(length, true) && collide(length);
     }
 
@@ -215,9 +199,7 @@ class Walk {
             glm::any(glm::greaterThan(position_, space_.high))) {
             return give_up(counts_.lost);
         }
-        if (const auto& field = medium().field) {
-            return collide_in(*field);
-        }
+        if (const auto& field = medium().field) return collide_in(*field);
         count_scattering();
         turn();
         return weight_.absorb() && survives();
@@ -227,9 +209,7 @@ class Walk {
     // of the collisions are with nothing. All groups of bands have the same share of these, so it
     // cancels from their weights.
     bool collide_in(const MediumField& field) {
-        if (field.has_density() && !(random_.next() < field.density(position_))) {
-            return true;
-        }
+        if (field.has_density() && !(random_.next() < field.density(position_))) return true;
         count_scattering();
         turn();
         const glm::vec3 albedo = field.albedo(position_);
@@ -249,9 +229,7 @@ class Walk {
     }
 
     bool arrive(const WalkHit& hit) {
-        if (hit.medium == kNoWalkMedium) {
-            return false;
-        }
+        if (hit.medium == kNoWalkMedium) return false;
         length_ += glm::distance(hit.position, position_);
         free_.set(hit.position, 0, 0);
         const float side = glm::dot(direction_, hit.flat) > 0 ? 1.0f : -1.0f;
@@ -261,9 +239,7 @@ class Walk {
         } else if (!beyond.enter(hit.medium)) {
             return give_up(counts_.buried);
         }
-        if (beyond.empty()) {
-            return hit.is_own && arrive_at_boundary(hit);
-        }
+        if (beyond.empty()) return hit.is_own && arrive_at_boundary(hit);
         return beyond.top() == bodies_.top() ? pass(hit, side, beyond)
                                              : change_medium(hit, side, beyond);
     }

@@ -26,9 +26,7 @@ class WalkRandom {
 
     /// Uniform in [0, 1), 24 bits.
     float next() {
-        if (spread_ && number_ < kSpread) {
-            return next_spread();
-        }
+        if (spread_ && number_ < kSpread) return next_spread();
         if (used_ == 4) {
             block_ = random_uniform(key_.seed, key_.stage,
                                     key_.start | std::uint64_t{blocks_++} << 32, key_.walk);

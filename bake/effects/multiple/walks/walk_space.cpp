@@ -73,9 +73,7 @@ void add_band(std::size_t band, std::span<const formats::Medium* const> distinct
     std::size_t group = 0;
     const auto fits = [&] {
         for (std::size_t m = 0; m < sigma_t.size(); ++m) {
-            if (!is_alike(all.media[m].sigma_t[group], sigma_t[m])) {
-                return false;
-            }
+            if (!is_alike(all.media[m].sigma_t[group], sigma_t[m])) return false;
         }
         return true;
     };
@@ -171,9 +169,7 @@ int count_shells(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {
     for (std::size_t l = 0; l < lines.size(); ++l) {
         found[l] = count_along(space, point, lines[l]);
         const auto end = found.begin() + static_cast<std::ptrdiff_t>(l);
-        if (std::find(found.begin(), end, found[l]) != end) {
-            return found[l];
-        }
+        if (std::find(found.begin(), end, found[l]) != end) return found[l];
     }
     return found.front();
 }

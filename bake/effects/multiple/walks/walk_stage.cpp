@@ -105,9 +105,7 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
                      const std::function<void(std::size_t, std::span<float>)>& subtract,
                      const Context& context) {
     WalkStage stage;
-    if (space.bands.empty() || sites.empty()) {
-        return stage;
-    }
+    if (space.bands.empty() || sites.empty()) return stage;
     const std::vector<WalkStart> starts = options.is_inside
                                               ? make_inner_starts(space, sites, context)
                                               : make_walk_starts(space, sites, context);
@@ -146,9 +144,7 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
 }
 
 float WalkStage::tint(glm::vec3 position, glm::vec3 normal) const {
-    if (!medium) {
-        return 1;
-    }
+    if (!medium) return 1;
     // Where light that is scattered few times turns back.
     constexpr std::array<float, 3> kDepths{0.1f, 0.4f, 1};
     glm::vec3 sum(0);
@@ -160,18 +156,14 @@ float WalkStage::tint(glm::vec3 position, glm::vec3 normal) const {
 
 void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
                      std::span<float> rgbx, std::span<float> views) {
-    if (stage.rows.blocks.empty()) {
-        return;
-    }
+    if (stage.rows.blocks.empty()) return;
     std::vector<SiteWeight> weights;
     stage.field.weigh(point.position, point.normal, weights,
                       stage.tint(point.position, point.normal));
     for (const SiteWeight& w : weights) {
         add_site_row(stage.rows, w.site, 0, glm::vec3(scale * w.weight), rgbx);
     }
-    if (views.empty()) {
-        return;
-    }
+    if (views.empty()) return;
     stage.view_field.weigh(point.position, point.normal, weights);
     for (const SiteWeight& w : weights) {
         for (std::uint32_t k = 1; k < stage.rows.views; ++k) {
@@ -184,9 +176,7 @@ void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale
 SiteRowSum sum_inner_rows(const WalkStage& stage, const BodyPoint& point, std::size_t texels,
                           std::uint32_t rows) {
     SiteRowSum sum(texels, rows, stage.rows.bands);
-    if (point.normal == glm::vec3(0)) {
-        return sum;
-    }
+    if (point.normal == glm::vec3(0)) return sum;
     const WalkSpace& space = *stage.space;
     const ViewSet seen =
         make_view_set(stage.view_fit, static_cast<double>(space.eta), point.normal, rows);
@@ -228,9 +218,7 @@ void add_balls(WalkSpace& space, double walks, std::uint64_t seed, const Context
     for (std::size_t m = 0; m < space.media.size(); ++m) {
         const WalkMedium& medium = space.media[m];
         const double largest = medium.field ? 0 : largest_of(space, medium);
-        if (!(largest > 0)) {
-            continue;
-        }
+        if (!(largest > 0)) continue;
         const auto alike = std::ranges::find_if(banked, [&](std::size_t other) {
             return is_same_phase(space.media[other].phase, medium.phase);
         });
@@ -238,9 +226,7 @@ void add_balls(WalkSpace& space, double walks, std::uint64_t seed, const Context
             space.balls[m] = space.balls[*alike];
             continue;
         }
-        if (banked.size() == kMostBanks) {
-            continue;
-        }
+        if (banked.size() == kMostBanks) continue;
         auto bank = std::make_shared<const BallBank>(
             make_ball_bank(medium.phase,
                            {.largest = largest,
