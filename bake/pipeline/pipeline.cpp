@@ -314,6 +314,9 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
             return std::move(status).error();
         }
         warn_of_volumes(result.knobs, result.volume_error, result.warnings);
+        if (result.accuracy) {
+            result.accuracy->met = result.accuracy->met && meets_target(result.error, result.knobs);
+        }
     }
     std::ranges::copy(layers.entries, std::back_inserter(result.volume_plan));
     if (!layers.layouts.empty()) {

@@ -1,6 +1,7 @@
 #include "bake/pipeline/volume_stages.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -125,6 +126,23 @@ void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& kn
     }
 }
 
+// The self-check saw the rows before volumes dimmed them; encoding them again errs by itself, and
+// both are independent.
+void add_encoding_error(const DimmedError& dimmed, BakeResult& result) {
+    const auto widen = [&](MeasuredError& error) {
+        for (double* const e : {&error.rms_relative, &error.ci95[0], &error.ci95[1]}) {
+            *e = std::hypot(*e, dimmed.rms_relative);
+        }
+    };
+    widen(result.error);
+    widen(result.error.at_receivers);
+    widen(result.error.between);
+    result.error.by_effect.push_back({"shadows of volumes", dimmed.rms_relative});
+    for (std::size_t i = 0; i < result.receiver_errors.size(); ++i) {
+        result.receiver_errors[i] = std::hypot(result.receiver_errors[i], dimmed.receivers[i]);
+    }
+}
+
 }  // namespace
 
 VolumeCheckOptions volume_check_effort(std::span<const VolumeWork> works,
@@ -199,7 +217,7 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
     result.volume_plan = std::move(baked->plan.entries);
     result.volume_error = std::move(baked->error);
     if (result.asset.position.empty()) return formats::ok_status();
-    const auto status = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t& rays) {
+    const auto dimmed = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t& rays) {
         if (std::ranges::none_of(parts.layouts, &VolumeLayout::lights_surfaces)) {
             return dim_surfaces(inputs.scene, result.knobs, nullptr, context, result.asset, rays);
         }
@@ -209,7 +227,14 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
         const VertexLight sent{light, inputs.receivers};
         return dim_surfaces(inputs.scene, result.knobs, &sent, context, result.asset, rays);
     });
-    return status && context.cancelled() ? interrupted_volumes() : status;
+    if (!dimmed) {
+        return dimmed.error();
+    }
+    if (context.cancelled()) {
+        return interrupted_volumes();
+    }
+    add_encoding_error(*dimmed, result);
+    return formats::ok_status();
 }
 
 void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>& error,

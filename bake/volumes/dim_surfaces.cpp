@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/encode/select_coefficients.h"
+#include "bake/encode/receiver_error.h"
+#include "bake/encode/row_sink.h"
 #include "bake/receivers/other_side.h"
 #include "bake/receivers/receiver.h"
 #include "bake/volumes/attenuation.h"
@@ -122,7 +125,7 @@ std::vector<float> decode_texels(const formats::SparseRowsView& rows,
 struct DimJob {
     const DensitySpace& space;
     const LightCells& cells;
-    const Selector& selector;
+    const RowEncoder& encoder;
     const formats::SparseRowsView& rows;
     const formats::PrimitiveRecord& record;
     const formats::Primitive& primitive;
@@ -142,26 +145,29 @@ LitRow answer_of(const DimJob& job, const LitVertex& lit, std::uint32_t term, st
                : answer_of_surface(job.material, term, band, job.bands);
 }
 
-struct DimmedVertex {
-    std::vector<formats::SparseRow> rows;
+// Rows of some vertices, and what encoding them again costs.
+struct DimmedBlock {
+    formats::SparseRows rows;
+    std::vector<float> error;  // of each vertex: receiver_error
+    double lost = 0, all = 0;  // sums of squares of what is lost, and of all
     std::uint64_t rays = 0;
 };
 
-DimmedVertex dim_vertex(const DimJob& job, std::size_t vertex) {
+// The dense rows of one vertex, dimmed and lit. Adds to `rays`.
+std::vector<float> dim_vertex(const DimJob& job, std::size_t vertex, std::uint64_t& rays) {
     const std::uint32_t n = job.rows.cubemap_size;
     const std::size_t texels = formats::cubemap_texels(n);
     const std::vector<float> through =
         transmittance(job.space, job.cells, job.primitive.position[vertex], n);
     const formats::RowRange range = job.record.rows();
-    DimmedVertex dimmed;
     LitVertex lit;
     if (job.sent != nullptr) {
         lit = light_vertex(*job.sent, *job.receivers, vertex, job.record.shading);
-        dimmed.rays = lit.rays();
+        rays += lit.rays();
     }
+    std::vector<float> values;
     for (std::uint32_t k = 0; k < job.record.terms; ++k) {
         const auto row = static_cast<std::uint32_t>(vertex) * job.record.terms + k;
-        std::vector<float> values(job.bands * texels);
         for (std::uint32_t band = 0; band < job.bands; ++band) {
             const std::uint32_t from = job.record.bands == 1 ? 0 : band;
             std::vector<float> dense = decode_texels(job.rows, range, row, from);
@@ -176,41 +182,56 @@ DimmedVertex dim_vertex(const DimJob& job, std::size_t vertex) {
                 add_sent_light(*job.sent, lit, answer, band, n, dense);
             }
             formats::haar_forward_cube(std::span<float>(dense), n);
-            std::ranges::copy(dense, values.begin() + static_cast<std::ptrdiff_t>(band * texels));
+            values.insert(values.end(), dense.begin(), dense.end());
         }
-        dimmed.rows.push_back(select_coefficients(job.selector, values, job.bands));
     }
-    return dimmed;
+    return values;
+}
+
+DimmedBlock dim_block(const DimJob& job, Range range) {
+    DimmedBlock block{empty_rows(job.encoder), {}};
+    for (std::size_t v = range.begin; v < range.end; ++v) {
+        std::vector<float> values = dim_vertex(job, v, block.rays);
+        const DenseRow row{values, job.rows.cubemap_size, job.record.terms, job.bands};
+        encode_receiver(job.encoder, row, block.rows);
+        const float error = receiver_error(row, TermsSeen::apart, block.rows);
+        const double all = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
+        block.all += all;
+        block.lost += all * static_cast<double>(error) * static_cast<double>(error);
+        block.error.push_back(error);
+    }
+    return block;
 }
 
 }  // namespace
 
-formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
-                             const VertexLight* sent, const Context& context, formats::Asset& asset,
-                             std::uint64_t& rays) {
+formats::Result<DimmedError> dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
+                                          const VertexLight* sent, const Context& context,
+                                          formats::Asset& asset, std::uint64_t& rays) {
     const DensitySpace space = make_density_space(scene);
     const bool is_grey = space.is_grey && (sent == nullptr || sent->light.bands() == 1);
     const std::vector<double> solid_angles = formats::texel_solid_angles(knobs.cubemap_size);
     const std::uint32_t n = knobs.cubemap_size;
     const LightCells cells = make_light_cells(std::min(n, kFinestTransmittance));
-    const Selector selector = make_selector(n, knobs.coefficients);
-    formats::SparseRows rows = formats::make_sparse_rows(n, knobs.code_bits);
+    RowSink sink = make_row_sink(make_row_encoder(n, knobs.coefficients, knobs.code_bits));
     const formats::SparseRowsView given = asset.transport.view();
     std::vector<formats::PrimitiveRecord> records = asset.primitives;
     std::uint32_t band_rows = 0;
     std::uint64_t codes = 0, done = 0;
     bool fits = true;
+    double lost = 0, all = 0;
+    DimmedError found;
     for (std::size_t p = 0; p < records.size(); ++p) {
         formats::PrimitiveRecord& record = records[p];
         record.bands = is_grey ? record.bands : 3;
         record.first_band_row = band_rows;
         record.first_code = codes;
-        const std::size_t before = rows.row_offset.back();
+        const std::size_t before = sink.rows.row_offset.back();
         const formats::Primitive& primitive = scene.primitives[p];
         const bool is_lit = sent != nullptr && sent->receivers[p].size() > 0;
         const DimJob job{space,
                          cells,
-                         selector,
+                         sink.encoder,
                          given,
                          asset.primitives[p],
                          primitive,
@@ -221,27 +242,21 @@ formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
                          solid_angles};
         for_each_block_in_order(
             record.vertex_count, kVerticesAtOnce, context,
-            [&](Range range) {
-                std::vector<DimmedVertex> block;
-                for (std::size_t v = range.begin; v < range.end; ++v) {
-                    block.push_back(dim_vertex(job, v));
-                }
-                return block;
-            },
-            [&](Range range, std::vector<DimmedVertex>&& block) {
-                for (const DimmedVertex& vertex : block) {
-                    rays += vertex.rays;
-                    for (const formats::SparseRow& row : vertex.rows) {
-                        fits = fits && formats::append_row(rows, row);
-                    }
-                }
+            [&](Range range) { return dim_block(job, range); },
+            [&](Range range, DimmedBlock&& block) {
+                rays += block.rays;
+                lost += block.lost;
+                all += block.all;
+                found.receivers.insert(found.receivers.end(), block.error.begin(),
+                                       block.error.end());
+                fits = fits && take_rows(sink, std::move(block.rows));
                 done += range.end - range.begin;
                 if (context.on_progress) {
                     context.on_progress({"shadows of volumes", done, asset.position.size()});
                 }
             });
         band_rows += record.vertex_count * record.terms * record.bands;
-        codes += (rows.row_offset.back() - before) * record.bands;
+        codes += (sink.rows.row_offset.back() - before) * record.bands;
     }
     if (!fits) {
         return formats::make_error(formats::ErrorKind::resource, "", "transport",
@@ -249,8 +264,9 @@ formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
                                    "lower --coefficients, or split the scene");
     }
     asset.primitives = std::move(records);
-    asset.transport = std::move(rows);
-    return formats::ok_status();
+    asset.transport = std::move(sink.rows);
+    found.rms_relative = all > 0 ? std::sqrt(lost / all) : 0;
+    return found;
 }
 
 }  // namespace opaline::bake

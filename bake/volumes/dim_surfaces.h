@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "bake/base/context.h"
 #include "bake/plan/knobs.h"
@@ -19,6 +20,13 @@ struct VertexLight {
     std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
 };
 
+/// What encoding dimmed rows again loses, relative: receiver_error of each vertex, and the RMS over
+/// all, in which a vertex weighs as the square of its rows.
+struct DimmedError {
+    std::vector<float> receivers;
+    double rms_relative = 0;
+};
+
 /// The asset with the transport of each vertex multiplied by the transmittance of volumes from each
 /// direction to the vertex, plus the light that they scatter to it where `sent` is not null. Exact
 /// for light that a surface reflects; light that enters a body is assumed to enter where it leaves.
@@ -27,8 +35,8 @@ struct VertexLight {
 /// light differ by band. The primitives are those of the scene, in order. Counts `rays`. Errors:
 /// resource (more than 2^32 coefficients). Stops early, with rows missing, once the context is
 /// cancelled.
-formats::Status dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
-                             const VertexLight* sent, const Context& context, formats::Asset& asset,
-                             std::uint64_t& rays);
+formats::Result<DimmedError> dim_surfaces(const formats::Scene& scene, const Knobs& knobs,
+                                          const VertexLight* sent, const Context& context,
+                                          formats::Asset& asset, std::uint64_t& rays);
 
 }  // namespace opaline::bake

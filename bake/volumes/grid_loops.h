@@ -42,16 +42,17 @@ inline glm::ivec3 corner_of_cube(int c) {
 /// a brick that is not there.
 template <class T, class Visit>
 void for_each_voxel_of_cell(const formats::SparseGrid<T>& grid, glm::ivec3 brick, Visit&& visit) {
-    using Grid = formats::SparseGrid<T>;
+    using Bricks = formats::SparseGrid<T>;
     for (int c = 0; c < 8; ++c) {
         const glm::ivec3 above = corner_of_cube(c);
         const std::uint32_t number = grid.brick_at(brick + above);
-        if (number == Grid::kEmpty) {
+        if (number == Bricks::kEmpty) {
             visit(T(0));
             continue;
         }
-        for_each_point(glm::ivec3(0), Grid::kSide - (Grid::kSide - 1) * above,
-                       [&](glm::ivec3 p) { visit(grid.brick(number)[Grid::offset_in_brick(p)]); });
+        for_each_point(
+            glm::ivec3(0), Bricks::kSide - (Bricks::kSide - 1) * above,
+            [&](glm::ivec3 p) { visit(grid.brick(number)[Bricks::offset_in_brick(p)]); });
     }
 }
 

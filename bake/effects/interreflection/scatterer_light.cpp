@@ -16,7 +16,7 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::uint32_t kCubemap = kBounceCubemap;
-constexpr std::size_t kTexels = 6 * kCubemap * kCubemap;
+constexpr std::size_t kRowTexels = 6 * kCubemap * kCubemap;
 
 BandColour to_bands(formats::Rgb c, std::uint32_t bands) {
     return bands == 1 ? BandColour{formats::luminance(c), 0, 0} : BandColour{c.r, c.g, c.b};
@@ -24,15 +24,15 @@ BandColour to_bands(formats::Rgb c, std::uint32_t bands) {
 
 std::vector<float> make_even_sky() {
     const std::vector<double> face = formats::texel_solid_angles(kCubemap);
-    std::vector<float> light(kTexels);
-    for (std::size_t t = 0; t < kTexels; ++t) {
+    std::vector<float> light(kRowTexels);
+    for (std::size_t t = 0; t < kRowTexels; ++t) {
         light[t] = static_cast<float>(face[t % face.size()]);
     }
     formats::haar_forward_cube(std::span<float>(light), kCubemap);
     return light;
 }
 
-struct Field {
+struct LitScatterers {
     const LightInputs& inputs;
     std::span<Scatterer> scatterers;
     std::vector<float> even_sky;  // a light of radiance 1, in the basis of rows
@@ -44,8 +44,8 @@ struct Field {
 };
 
 // Light of the environment at a point, E.
-std::uint64_t gather_row(const Field& field, const DirectionSet& directions, const Receiver& at,
-                         std::span<float> row) {
+std::uint64_t gather_row(const LitScatterers& field, const DirectionSet& directions,
+                         const Receiver& at, std::span<float> row) {
     const std::uint64_t rays = gather_irradiance(field.inputs.bake.rays, directions, at, row);
     formats::haar_forward_cube(row, kCubemap);
     return rays;
@@ -54,8 +54,8 @@ std::uint64_t gather_row(const Field& field, const DirectionSet& directions, con
 void add_scaled(std::span<const float> from, const BandColour& factor, std::uint32_t bands,
                 std::span<float> to) {
     for (std::size_t b = 0; b < bands; ++b) {
-        for (std::size_t k = 0; k < kTexels; ++k) {
-            to[b * kTexels + k] += factor[b] * from[k];
+        for (std::size_t k = 0; k < kRowTexels; ++k) {
+            to[b * kRowTexels + k] += factor[b] * from[k];
         }
     }
 }
@@ -70,15 +70,15 @@ float even_light(std::span<const float> plane) {
 }
 
 // Of E.
-float openness_of(const Field& field, std::span<const float> row) {
+float openness_of(const LitScatterers& field, std::span<const float> row) {
     return std::clamp(static_cast<float>(relit(row, field.even_sky)) / std::numbers::pi_v<float>,
                       0.0f, 1.0f);
 }
 
 // B of an opaque or thin-walled surface: rho E. What a lobe mirrors crosses no thin wall.
-std::uint64_t light_surface(Field& field, const DirectionSet& directions, std::size_t i) {
+std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions, std::size_t i) {
     Scatterer& s = field.scatterers[i];
-    std::vector<float> row(kTexels), emitted(field.light.row_size());
+    std::vector<float> row(kRowTexels), emitted(field.light.row_size());
     formats::Rgb reflect = s.albedo.sum(), transmit{0, 0, 0};
     if (const auto& sheet = field.material(i).sheet) {
         reflect = s.albedo.diffuse * sheet->reflect + s.albedo.mirrored;
@@ -106,8 +106,8 @@ void add_leaving(const RowLayout& layout, std::span<const float> weight,
     for (std::size_t k = 0; k < weight.size(); ++k) {
         for (std::uint32_t b = 0; b < bands; ++b) {
             const std::size_t from = k * own_bands + std::min(b, own_bands - 1);
-            for (std::size_t t = 0; t < kTexels; ++t) {
-                to[b * kTexels + t] += colour[b] * weight[k] * rows[from * kTexels + t];
+            for (std::size_t t = 0; t < kRowTexels; ++t) {
+                to[b * kRowTexels + t] += colour[b] * weight[k] * rows[from * kRowTexels + t];
             }
         }
     }
@@ -115,8 +115,8 @@ void add_leaving(const RowLayout& layout, std::span<const float> weight,
 
 // B of points of one medium, from the rows that its effects give, without what the boundary mirrors
 // (bounce_rays.h); and what they make of bounced light.
-std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::uint32_t material,
-                           std::span<const std::size_t> members) {
+std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
+                           std::uint32_t material, std::span<const std::size_t> members) {
     constexpr std::size_t kEvenPoints = 256;
     const std::vector<Scatterer> spread = spread_over_material(field.inputs, material, kEvenPoints);
     std::vector<Receiver> outside;
@@ -143,7 +143,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
     const float eta = medium.eta;
     const std::uint32_t bands = field.light.bands;
     std::uint64_t rays = 0;
-    std::vector<float> around(kTexels), leaving(field.light.row_size());
+    std::vector<float> around(kRowTexels), leaving(field.light.row_size());
     const auto find_leaving = [&](std::size_t m, const BandColour& colour) {
         std::ranges::fill(around, 0.0f);
         std::ranges::fill(leaving, 0.0f);
@@ -156,7 +156,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
         find_leaving(m, {1, 1, 1});
         BandColour sum{};
         for (std::uint32_t b = 0; b < bands; ++b) {
-            sum[b] = even_light(std::span(leaving).subspan(b * kTexels, kTexels));
+            sum[b] = even_light(std::span(leaving).subspan(b * kRowTexels, kRowTexels));
         }
         even.add(spread[m - members.size()].position, even_light(around), sum);
     }
@@ -179,7 +179,7 @@ std::uint64_t light_medium(Field& field, const DirectionSet& directions, std::ui
     return rays;
 }
 
-std::uint64_t light_all(Field& field) {
+std::uint64_t light_all(LitScatterers& field) {
     const DirectionSet directions = make_direction_set(kCubemap);
     std::uint64_t rays = 0;
     constexpr std::size_t kBlock = 16;
@@ -215,11 +215,11 @@ std::uint64_t light_all(Field& field) {
 ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
                                 std::uint32_t bands, std::uint64_t& rays) {
     const std::size_t count = scatterers.size();
-    Field field{inputs,
-                scatterers,
-                make_even_sky(),
-                {bands, CodedRows(count, bands * kTexels), std::vector<BandColour>(count),
-                 std::vector<BandColour>(count)}};
+    LitScatterers field{inputs,
+                        scatterers,
+                        make_even_sky(),
+                        {bands, CodedRows(count, bands * kRowTexels),
+                         std::vector<BandColour>(count), std::vector<BandColour>(count)}};
     rays += light_all(field);
     return std::move(field.light);
 }

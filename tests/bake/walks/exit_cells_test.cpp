@@ -99,6 +99,38 @@ TEST(ExitCells, SeeEvenLightAsBrightFromEveryExit) {
     }
 }
 
+// Lamps light media of few vertices through cube maps of 1, 2 or 4 texels: coarser than the cells.
+TEST(ExitCells, RowsOfCoarseCubeMapsHaveTheCoarseCoefficientsOfFineOnes) {
+    const std::vector<SurfaceSample> samples{facing({0.3f, 1, 0.2f})};
+    const ExitLobe lobe = make_exit_lobe(1.4);
+    const HaarVector light = entering(kSize, 1.4, samples[0].normal, [](glm::vec3) { return 1.0; });
+    for (const std::uint32_t size : {1u, 2u, 4u}) {
+        std::vector<std::uint32_t> coarse, fine;
+        std::vector<float> value;
+        for (std::uint32_t k = 0; k < formats::cubemap_texels(size); ++k) {
+            const std::uint32_t line = k / (size * size) * kSize + k / size % size;
+            coarse.push_back(k);
+            fine.push_back(line * kSize + k % size);
+            value.push_back(light.value[fine.back()]);
+        }
+        const auto row_of = [&](std::uint32_t n, const std::vector<std::uint32_t>& index) {
+            const ExitCells cells(samples, n, lobe);
+            std::vector<float> row(4 * formats::cubemap_texels(n));
+            ExitCells::Sums sums{};
+            ExitCells::Cells own{};
+            cells.add_exit(0, one({-0.5f, 1, 0.4f}), {1, 0.5f, 0.2f, 0}, sums);
+            const SparseVector vector{index, value};
+            cells.add(0, vector, cells.averages_of(vector), sums, {row, 4}, own);
+            cells.add_cells(own, {row, 4});
+            return row;
+        };
+        const std::vector<float> few = row_of(size, coarse), many = row_of(kSize, fine);
+        for (std::size_t k = 0; k < 4 * coarse.size(); ++k) {
+            EXPECT_EQ(few[k], many[4 * fine[k / 4] + k % 4]) << size << " " << k;
+        }
+    }
+}
+
 // Light that is a quadratic function of the direction is seen as it is where it comes from, at any
 // angle, but for what cells 22 degrees wide smooth of it.
 TEST(ExitCells, SeeLightOfDegreeTwoAsItIsTowardsTheExit) {

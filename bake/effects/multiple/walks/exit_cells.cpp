@@ -257,7 +257,9 @@ void ExitCells::add_cells(const Cells& cells, const TexelRow& row) const {
             }
             formats::haar_forward(std::span(own), kSide, scratch);
             for (std::uint32_t c = 0; c < kPerFace; ++c) {
-                const std::size_t k = (face * std::size_t{size_} + c / kSide) * size_ + c % kSide;
+                const std::uint32_t in_row = c / kSide, in_column = c % kSide;
+                if (std::max(in_row, in_column) >= size_) continue;  // too fine for the row
+                const std::size_t k = (face * std::size_t{size_} + in_row) * size_ + in_column;
                 row.values[row.step * k + b] += own[c];
             }
         }

@@ -33,8 +33,8 @@ class ExitCells {
     using Cells = std::array<std::array<float, kCount>, 3>;  ///< light of cells, band by band
     using Functions = std::array<float, kFunctions>;
 
-    /// `cubemap_size` of the vectors that are added, at least 8; `lobe` of the boundary; cells are
-    /// made ready for the samples' normals.
+    /// `cubemap_size` of the vectors that are added, a power of two; `lobe` of the boundary; cells
+    /// are made ready for the samples' normals.
     ExitCells(std::span<const SurfaceSample> samples, std::uint32_t cubemap_size,
               const ExitLobe& lobe);
 
