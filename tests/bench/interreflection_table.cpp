@@ -4,7 +4,6 @@
 //     that read the nearest of as many scatterers as there are, whose light is found with 256 rays
 //     each; of each error, the part that rays of other seeds share.
 //   ... truth SCENE: a file of production against path tracing of all light.
-//   ... cost SCENE: seconds and rays of stages without and with interreflection.
 // SCENE: box (a room open to the front, with a block in it), room (no block), ball (dented, over a
 // floor), statue.
 #include <algorithm>
@@ -269,25 +268,12 @@ void compare(const World& w, const World& fine, std::uint32_t n) {
     std::printf("\n");
 }
 
-// Prints stages; rays of a stage do not depend on what else the machine does.
-BakeResult bake_and_print(const formats::Scene& scene, Quality quality,
-                          std::vector<std::string> effects) {
-    BakeOptions options;
-    options.effects = std::move(effects);
-    options.quality = quality;
-    BakeResult baked = run_bake(scene, resolve_knobs(options).value(), {}).value();
-    for (const StageReport& stage : baked.stages) {
-        std::printf("   %-36s %8.2f s %12.0f rays\n", stage.name.c_str(), stage.seconds,
-                    static_cast<double>(stage.rays));
-    }
-    std::printf("   numerical error %.4f, %.1f s\n", baked.error.rms_relative, baked.seconds_total);
-    std::fflush(stdout);
-    return baked;
-}
-
 // The file against path tracing of all light.
-void check(const formats::Scene& scene, Quality quality) {
-    const BakeResult baked = bake_and_print(scene, quality, {"direct", "interreflection"});
+void check(const formats::Scene& scene) {
+    BakeOptions options;
+    options.effects = {"direct", "interreflection"};
+    options.quality = Quality::production;
+    const BakeResult baked = run_bake(scene, resolve_knobs(options).value(), {}).value();
     ModelCheckOptions wanted;
     wanted.simulated = held_light(all_effects(), baked.plan);
     wanted.noise = 0.004;
@@ -314,16 +300,10 @@ int opaline::tests::interreflection_table(int argc, char** argv) {
         compare(World(scene), World(name == "ball" ? split(split(scene)) : scene),
                 static_cast<std::uint32_t>(std::strtoul(argv[3], nullptr, 10)));
     } else if (is_known && what == "truth") {
-        check(scene, Quality::production);
-    } else if (is_known && what == "cost") {
-        for (const Quality quality : {Quality::draft, Quality::production}) {
-            bake_and_print(scene, quality, {"direct"});
-            bake_and_print(scene, quality, {"direct", "interreflection"});
-        }
+        check(scene);
     } else {
-        std::fprintf(
-            stderr,
-            "opaline_bench interreflection-table gather SCENE RAYS | truth SCENE | cost SCENE\n");
+        std::fprintf(stderr,
+                     "opaline_bench interreflection-table gather SCENE RAYS | truth SCENE\n");
         return 2;
     }
     return 0;
