@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "bake/cli/messages.h"
 #include "bake/mie/angular_table.h"
 #include "bake/scattering/phase.h"
 #include "formats/media/read_phase_table.h"

@@ -1,5 +1,5 @@
 # Writes OUTPUT, a .cpp with the text of files as string views: -DFILES=NAME=PATH|NAME=PATH ...
-set(source "#include \"bake/accuracy/sweep/page_parts.h\"\n\nnamespace opaline::bake {\n\n")
+set(source "#include \"bake/accuracy/sweep/report_page.h\"\n\nnamespace opaline::bake {\n\n")
 string(REPLACE "|" ";" files "${FILES}")
 foreach(file IN LISTS files)
     string(REGEX MATCH "^([A-Za-z]+)=(.*)$" matched "${file}")

@@ -18,10 +18,6 @@ namespace {
 
 using runtime::Picture;
 
-// What the page is made of: the files of page/ and Chart.js, put into the program by embed.cmake.
-extern const std::string_view kPageTemplate, kPageStyle, kPointsScript, kChartsScript, kPageScript,
-    kChartLibrary;
-
 using Json = nlohmann::ordered_json;
 
 formats::Result<std::string> data_uri(const formats::Image8& image) {

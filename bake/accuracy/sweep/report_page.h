@@ -38,4 +38,8 @@ formats::Result<std::string> make_report_page(const SweepResult& result,
                                               const SweepAnalysis& analysis,
                                               const nlohmann::ordered_json& json);
 
+/// What the page is made of: the files of page/ and Chart.js, put into the program by embed.cmake.
+extern const std::string_view kPageTemplate, kPageStyle, kPointsScript, kChartsScript, kPageScript,
+    kChartLibrary;
+
 }  // namespace opaline::bake
