@@ -166,8 +166,8 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
 formats::VdbReadOptions with_program() {
     return {.reader = OPALINE_PROGRAM,
             .memory_bytes = 1ull << 30,
-            .cpu_seconds = 20,
-            .wall_seconds = 60};
+            .cpu_seconds = 60,
+            .wall_seconds = 180};
 }
 
 formats::Result<std::vector<formats::VdbGrid>> read(const std::filesystem::path& path,

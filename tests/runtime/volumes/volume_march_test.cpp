@@ -205,6 +205,7 @@ TEST(VolumeMarch, SourcesBelowZeroCountAsZeroBetweenNodesToo) {
     volume.extent = {1, 1, 1};
     volume.spacing = 8;
     volume.sigma_t = {1e-3f, 1e-3f, 1e-3f};
+    volume.density = [](float, float, float) { return 1.0f; };
     // J = V goes from 1 at z = 0 to -1 at z = 8.
     volume.rows = [](NodeVoxel node) {
         return std::vector<SparseRow>{test::constant_row(kSize, node[2] == 0 ? 1.0f : -1.0f)};
