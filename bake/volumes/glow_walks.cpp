@@ -101,8 +101,8 @@ std::vector<GlowingGrid> make_glowing_grids(const formats::Scene& scene,
         place_cells(volume.emission, volume.density.to_scene, own);
         for_each_point(glm::ivec3(0), own.extent, [&](glm::ivec3 cell) {
             float most = 0;
-            for_each_voxel_of_cell(volume.emission, own.first_cell + cell, [&](glm::vec3 v) {
-                most = std::max({most, v.x, v.y, v.z});
+            for_each_voxel_of_cell(volume.emission, own.first_cell + cell, [&](glm::vec3 sent) {
+                most = std::max({most, sent.x, sent.y, sent.z});
             });
             own.bound.push_back(most);
         });
