@@ -39,7 +39,8 @@ std::vector<bool> cells_with_density(const Grid& grid, glm::ivec3 brick, int spa
     if (is_empty) return has;
     constexpr int kSide = Grid::kSide;
     const int cells = kSide / spacing;
-    has.resize(static_cast<std::size_t>(cells * cells * cells));
+    const auto along = static_cast<std::size_t>(cells);
+    has.resize(along * along * along);
     is_empty = true;
     for_each_point(glm::ivec3(0), glm::ivec3(kSide + 1), [&](glm::ivec3 v) {
         const glm::ivec3 above = v / kSide;
