@@ -187,4 +187,26 @@ std::string errors_of(const Result<ImportedScene>& result) {
     return result ? "" : lines(result.error().diagnostics);
 }
 
+AssetBuilder asset_with_extensions(Json extensions) {
+    AssetBuilder asset = triangle_asset();
+    asset.json["meshes"][0]["primitives"][0]["material"] = 0u;
+    asset.json["materials"] =
+        Json::array({{{"name", "Wax"},
+                      {"pbrMetallicRoughness", {{"metallicFactor", 0}, {"roughnessFactor", 0.25}}},
+                      {"extensions", std::move(extensions)}}});
+    return asset;
+}
+
+Json scattering_extensions() {
+    return {{"KHR_materials_transmission", {{"transmissionFactor", 1}}},
+            {"KHR_materials_volume",
+             {{"thicknessFactor", 1},
+              {"attenuationDistance", 0.02},
+              {"attenuationColor", {0.9, 0.5, 0.25}}}},
+            {"KHR_materials_scatter",
+             {{"scatterStrengthFactor", 1},
+              {"multiscatterColorFactor", {0.8, 0.5, 0}},
+              {"scatterAnisotropy", 0.5}}}};
+}
+
 }  // namespace opaline::tests

@@ -67,6 +67,11 @@ void write_file(const std::filesystem::path& path, const void* data, std::size_t
 void write_file(const std::filesystem::path& path, const std::string& text);
 void write_file(const std::filesystem::path& path, const Blob& bytes);
 
+/// The triangle in a material with these extensions and a white, dielectric surface.
+AssetBuilder asset_with_extensions(Json extensions);
+/// Of a medium that scatters: transmission, a volume, scattering.
+Json scattering_extensions();
+
 /// Writes the asset as GLB into a fresh folder and imports it.
 formats::Result<formats::ImportedScene> import_asset(const AssetBuilder& asset,
                                                      const formats::ImportOptions& options = {});
