@@ -13,7 +13,6 @@ enum class RandomStage : std::uint32_t {
     held_back_receivers = 1,
     surface_samples = 2,
     bootstrap = 3,
-    half_space_walk = 4,
     reference_path = 5,
     reference_receivers = 6,
     check_points = 7,

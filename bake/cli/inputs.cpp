@@ -166,7 +166,7 @@ formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& 
                     : ending == ".json" ? open_media_scene(path, options, detail)
                                         : open_gltf(path, options, media, detail);
     if (!imported) return imported;
-    const auto flattened = bake::flatten_slabs(imported->scene, {});
+    const auto flattened = bake::flatten_slabs(imported->scene);
     imported->warnings.insert(imported->warnings.end(), flattened.begin(), flattened.end());
     if (auto status = report_warnings(imported->warnings); !status) {
         return std::move(status).error();

@@ -5,7 +5,6 @@
 
 #include "bake/plan/knobs.h"
 #include "bake/plan/row_layout.h"
-#include "bake/scattering/half_space_medium.h"
 #include "bake/scene/scene_facts.h"
 #include "formats/scene.h"
 
@@ -84,10 +83,10 @@ Work openness_work(const CostInput& input, double receivers, bool occluded);
 /// Seconds of a random walk through a body: a flight and what ends it.
 inline constexpr CostBySize kBodyEvent{2.4e-7, 2.8e-7};
 
-/// Random walks that find the reflectance of a medium (half_space_reflectance), all bands.
-inline Work walk_work(const formats::Medium& medium) {
-    constexpr double kEvent = 5.6e-8;
-    return {0, count_walk_events(medium) * kEvent};
+/// The reflectance of a half space (even_light.h), all bands.
+inline Work even_light_work() {
+    constexpr double kBand = 1e-2;
+    return {0, 3 * kBand};
 }
 
 }  // namespace opaline::bake

@@ -2,13 +2,33 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "bake/scattering/fresnel.h"
 #include "bake/scattering/gauss_legendre.h"
 
 namespace opaline::bake {
+namespace {
 
-double half_space_once(double eta) {
+// Henyey-Greenstein's phase function over the isotropic one, in the mean over the azimuth, from a
+// direction of cosine `down` to one of cosine `up` on the other side of the plane.
+double turn_back(double g, double down, double up) {
+    constexpr int kAzimuths = 64;
+    if (g == 0) return 1;
+    const double sines = std::sqrt((1 - down * down) * (1 - up * up));
+    double sum = 0;
+    for (int k = 0; k < kAzimuths; ++k) {
+        const double cosine =
+            sines * std::cos(std::numbers::pi * (k + 0.5) / kAzimuths) - down * up;
+        const double square = 1 + g * g - 2 * g * cosine;
+        sum += (1 - g * g) / (square * std::sqrt(square));
+    }
+    return sum / kAzimuths;
+}
+
+}  // namespace
+
+double half_space_once(double eta, double g) {
     // On a plane the integral over depth is 1 / (sigma_t (1 + mu_o' / mu_i')); the factors of the
     // isotropic phase function, of both azimuths and of the incident flux multiply to 1.
     GaussLegendre rule = make_gauss_legendre(32);
@@ -32,7 +52,8 @@ double half_space_once(double eta) {
             if (in_o > 0 && in_i > 0) {
                 const double jacobian = mu_i / (eta * eta * in_i);
                 sum += rule.weight[o] * rule.weight[i] * mu_o * fresnel_transmittance(mu_o, eta) *
-                       fresnel_transmittance(mu_i, eta) * jacobian / (1 + in_o / in_i);
+                       fresnel_transmittance(mu_i, eta) * jacobian * turn_back(g, in_i, in_o) /
+                       (1 + in_o / in_i);
             }
         }
     }

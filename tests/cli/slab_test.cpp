@@ -70,8 +70,8 @@ double radiance(const Json& view, const char* side, const std::string& order) {
 
 // Both against the solver, in the plane of the light, and single scattering by hand.
 TEST(Slab, ViewsOfEveryMethodSeeTheSameLight) {
-    const Arguments layer = {"--optical-depth", "1",   "--g",     "0.7",
-                             "--cosine",        "0.6", "--views", "8"};
+    const Arguments layer = {"--optical-depth", "1", "--g",       "0.7", "--cosine", "0.6",
+                             "--views",         "8", "--streams", "24"};
     const auto with = [&](const char* method) {
         return slab(join(layer, {"--method", method})).at("views");
     };

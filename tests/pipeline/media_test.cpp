@@ -9,8 +9,8 @@
 #include "bake/plan/scattered_once.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_medium.h"
 #include "bake/scene/inspect_scene.h"
+#include "bake/slab/even_light.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/media/presets.h"
 #include "formats/opal/cubemap.h"
@@ -91,7 +91,7 @@ TEST(TranslucentPipeline, DirectAloneComparesWithADiffuseSurfaceOfTheSameAlbedo)
     EXPECT_EQ(effects_of_ball(result.plan), Names{"direct"});
     EXPECT_EQ(result.asset.primitives[0].shading, Shading::diffuse);
     EXPECT_TRUE(result.asset.openness.empty());
-    const Rgb albedo = half_space_albedo(medium, 0, {});
+    const Rgb albedo = half_space_albedo(medium);
     EXPECT_GT(albedo.r, albedo.g);
     EXPECT_GT(albedo.g, albedo.b);
     EXPECT_EQ(result.asset.base_color[0].g, albedo.g);
@@ -239,7 +239,7 @@ TEST(TranslucentPipeline, OpticallyThickBodyReflectsTheLightThatEntersWhereItSta
     const BakeResult result = bake_scene(scene, options);
 
     const double eta = 1.3f, exit = 1 - fresnel_moments(eta).external;
-    const MediumProfile profile = make_medium_profile(medium, 0, {});
+    const MediumProfile profile = make_medium_profile(medium);
     std::vector<float> transmittance;
     for (int i = 0; i <= 1024; ++i) {
         transmittance.push_back(static_cast<float>(fresnel_transmittance(i / 1024.0, eta)));

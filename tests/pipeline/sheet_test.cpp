@@ -126,7 +126,7 @@ TEST(Sheet, OfAMediumIsAsBrightAsAPathTracedSlabInTheMean) {
     medium.thickness = 0.01f;  // three mean free paths
     tests::Scene scene = tests::make_scene({make_leaf()});
     scene.materials[0].medium = medium;
-    EXPECT_TRUE(flatten_slabs(scene, {}).empty());
+    EXPECT_TRUE(flatten_slabs(scene).empty());
     ASSERT_FALSE(scene.materials[0].medium);
     ASSERT_TRUE(scene.materials[0].sheet);
     EXPECT_TRUE(scene.materials[0].double_sided);
@@ -159,7 +159,7 @@ TEST(Sheet, OfAClearMediumWarnsOfWhatPassesUnscattered) {
     tests::Scene scene = tests::make_scene({make_leaf()});
     scene.materials[0].medium = tests::make_grey_medium(10, 0, 1);
     scene.materials[0].medium->thickness = 0.01f;
-    EXPECT_THAT(flatten_slabs(scene, {}),
+    EXPECT_THAT(flatten_slabs(scene),
                 ::testing::ElementsAre(::testing::Field(&formats::Diagnostic::fault,
                                                         ::testing::HasSubstr("83 % of the light"))))
         << "2 E_3(0.1)";
@@ -170,7 +170,7 @@ TEST(Sheet, OfARefractingMediumIsGlossyAndLosesNothing) {
     tests::Scene scene = tests::make_scene({make_leaf()});
     scene.materials[0].medium = tests::make_grey_medium(1000, 0, 1.5f);
     scene.materials[0].medium->thickness = 0.02f;
-    EXPECT_TRUE(flatten_slabs(scene, {}).empty());
+    EXPECT_TRUE(flatten_slabs(scene).empty());
     const formats::Sheet sheet = *scene.materials[0].sheet;
     EXPECT_NEAR(sheet.reflect.g + sheet.transmit.g, 1, 0.01f);
     EXPECT_GT(sheet.reflect.g, 5 * sheet.transmit.g);
@@ -251,7 +251,7 @@ TEST(Sheet, OfAMediumThatTakesLongWalksEndsSoonAndLosesNothing) {
         medium.phase.g = 0.99f;
         medium.thickness = 1;
         scene.materials[0].medium = medium;
-        EXPECT_TRUE(flatten_slabs(scene, {}).empty());
+        EXPECT_TRUE(flatten_slabs(scene).empty());
         const formats::Sheet sheet = *scene.materials[0].sheet;
         EXPECT_NEAR(sheet.reflect.g + sheet.transmit.g, 1, 0.02f) << eta;
         EXPECT_LT(sheet.transmit.g, 0.05f) << eta;

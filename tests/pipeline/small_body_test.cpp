@@ -92,7 +92,7 @@ TEST(SmallBodies, ManyFoldsSendOutNoMoreThanTheCentreOfTheProfileAllOverThem) {
             for (const float g : {-0.8f, 0.0f, 0.5f, 0.9f}) {
                 formats::Medium medium = tests::make_medium(0.01f, albedo, g, 1);
                 medium.profile = kind;
-                const MediumProfile profile = make_medium_profile(medium, 0, {});
+                const MediumProfile profile = make_medium_profile(medium);
                 const double bound =
                     small_body_bound(medium, bands_of(medium)[0], kDiagonal, kArea);
                 const double sum = profile.eval(0, 0) * kArea;

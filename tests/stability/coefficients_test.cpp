@@ -109,7 +109,7 @@ TEST(Profile, InItsCentreASampleGivesNoMoreThanTheTotal) {
                             Medium::Profile::beams, Medium::Profile::normalized}) {
         Medium medium = make_grey_medium(1000, 1);
         medium.profile = kind;
-        const MediumProfile profile = make_medium_profile(medium, 0, {});  // takes a while
+        const MediumProfile profile = make_medium_profile(medium);  // takes a while
         for (const double spacing_in_z : {0.1, 1.0, 10.0, 1e4}) {
             const double spacing = spacing_in_z * profile.smallest;
             const GatherProfile gather = make_gather_profile(profile, spacing, 1e3 * spacing);
@@ -125,7 +125,7 @@ TEST(Profile, InItsCentreASampleGivesNoMoreThanTheTotal) {
 TEST(Profile, FarRangeOfTheBetterDipoleKeepsItsDigits) {
     Medium medium = make_grey_medium(1000, 1e-8f);
     medium.profile = Medium::Profile::better;
-    const MediumProfile profile = make_medium_profile(medium, 0, {});
+    const MediumProfile profile = make_medium_profile(medium);
     const Dipole d = std::get<Dipole>(profile.band[0]);
     const GatherProfile gather = make_gather_profile(profile, 1e-9, 1e3);
     for (const double r : {10.0, 100.0, 1e4, 1e5}) {

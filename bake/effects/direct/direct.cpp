@@ -8,8 +8,8 @@
 #include "bake/plan/add_other_light.h"
 #include "bake/plan/stage_work.h"
 #include "bake/receivers/other_side.h"
-#include "bake/scattering/half_space_medium.h"
 #include "bake/scene/coverage.h"
+#include "bake/slab/even_light.h"
 #include "bake/transport/irradiance_transport.h"
 #include "bake/truth/true_reflection.h"
 #include "formats/opal/haar.h"
@@ -69,7 +69,7 @@ struct Albedo : Prepared {
 
 PreparedPtr study(const EffectInputs& inputs, std::uint64_t&) {
     auto albedo = std::make_unique<Albedo>();
-    albedo->value = half_space_albedo(inputs.medium(), inputs.knobs.seed, inputs.context);
+    albedo->value = half_space_albedo(inputs.medium());
     return albedo;
 }
 
@@ -170,7 +170,7 @@ EffectDescriptor describe_direct(Effect id) {
                   .applies = [](const formats::Material& material,
                                 const RowLayout&) { return material.medium.has_value(); },
                   .run = study,
-                  .work = [](const SubjectCost& c) { return walk_work(c.medium()); }},
+                  .work = [](const SubjectCost&) { return even_light_work(); }},
         .prepare = {.run = prepare},
         .gather = {.add = add,
                    .work =

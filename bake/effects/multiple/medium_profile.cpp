@@ -14,7 +14,7 @@
 #include "bake/effects/multiple/walks/view_set.h"
 #include "bake/plan/plan_input.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_medium.h"
+#include "bake/slab/even_light.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
 
@@ -117,8 +117,7 @@ void compare_views(const ViewSet& set, const std::vector<TwoEstimates>& seen,
 
 }  // namespace
 
-MediumProfile make_medium_profile(const Medium& medium, std::uint64_t seed,
-                                  const Context& context) {
+MediumProfile make_medium_profile(const Medium& medium) {
     const bool paper = medium.fidelity == Medium::Fidelity::paper;
     const bool unscaled = paper || medium.profile == Medium::Profile::classic;
     const bool normalized = !paper && medium.profile == Medium::Profile::normalized;
@@ -140,14 +139,14 @@ MediumProfile make_medium_profile(const Medium& medium, std::uint64_t seed,
             make_profile(medium.profile, paper, (1 - g) * sigma_s, sigma_a, profile.eta);
         const double total = profile_total(profile.band[b]);
         if (!unscaled && total > 0) {
-            const HalfSpaceReflectance walked =
-                half_space_reflectance(sigma_s, sigma_a, medium, seed, context);
+            const HalfSpaceReflectance returned =
+                half_space_reflectance(sigma_s / (sigma_s + sigma_a), g, profile.eta);
             if (normalized) {
                 profile.band[b] = make_normalized_diffusion(
-                    (walked.once + walked.rest) / escape, profile_length(profile.band[b]),
+                    (returned.once + returned.rest) / escape, profile_length(profile.band[b]),
                     DiffusionLength::mean_free_path_diffuse);
             } else {
-                profile.scale[b] = walked.rest / (total * escape);
+                profile.scale[b] = returned.rest / (total * escape);
             }
         }
         if (total > 0) {

@@ -25,11 +25,10 @@ struct MediumProfile {
 };
 
 /// In physical fidelity, the profiles `automatic`, `better` and `beams` are scaled per band, so
-/// that a half space returns the multiple scattering of a random walk (scattering/README.md,
-/// "Energy match"). `normalized` gets the walk's whole reflectance, single scattering included.
+/// that a half space returns the multiple scattering that it has (half_space_reflectance).
+/// `normalized` gets the whole reflectance, single scattering included.
 /// `classic` is not scaled. `paper` fidelity: the classic dipole as printed, whatever `profile`.
-MediumProfile make_medium_profile(const formats::Medium& medium, std::uint64_t seed,
-                                  const Context& context);
+MediumProfile make_medium_profile(const formats::Medium& medium);
 
 /// Times samples per path: resolves the shape of a body that light crosses.
 inline constexpr double kLeastSamplesPerPath = 2000;

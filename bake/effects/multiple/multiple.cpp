@@ -94,8 +94,7 @@ MultipleModel model_of(const EffectState& state) {
 
 PreparedPtr study(const EffectInputs& inputs, std::uint64_t& rays) {
     auto studied = std::make_unique<Studied>();
-    studied->profile = make_medium_profile(even_medium(inputs.bake.scene, inputs.material),
-                                           inputs.knobs.seed, inputs.context);
+    studied->profile = make_medium_profile(even_medium(inputs.bake.scene, inputs.material));
     studied->choice = choose_model(inputs, studied->profile, rays);
     if (studied->choice.model == MultipleModel::walks && studied->choice.all_orders &&
         measures_views(inputs.knobs)) {

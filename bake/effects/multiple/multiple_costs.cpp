@@ -162,13 +162,13 @@ double count_weights(const formats::Medium& medium, const MaterialFacts& facts, 
 }
 
 Work profile_work(const SubjectCost& cost) {
-    // make_medium_profile: these two are not matched to a walk.
+    // make_medium_profile: these two are not matched to the half space.
     const formats::Medium& medium = cost.medium();
     if (medium.profile == formats::Medium::Profile::classic ||
         medium.fidelity == formats::Medium::Fidelity::paper) {
         return {};
     }
-    return walk_work(medium);
+    return even_light_work();
 }
 
 Work samples_work(const SubjectCost& cost) {

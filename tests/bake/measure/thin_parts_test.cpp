@@ -79,7 +79,7 @@ TEST(ThinParts, LengthsAreThoseOfReducedScatteringAndBlackBandsHaveNone) {
     medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.8f, 0, {}, {}};
     medium.sigma_s.b = 0.1f;
     medium.sigma_a.b = 1000;
-    const auto lengths = transport_lengths(medium, make_medium_profile(medium, 0, {}));
+    const auto lengths = transport_lengths(medium, make_medium_profile(medium));
     EXPECT_NEAR(lengths[0], 1.0 / 21, 1e-5);
     EXPECT_EQ(lengths[0], lengths[1]);
     EXPECT_EQ(lengths[2], 0);

@@ -76,7 +76,7 @@ TEST(SurfaceIntegral, MiddleOfALargeSquareReturnsTheProfilesTotal) {
         tests::make_translucent_scene({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 2)},
                                       tests::make_grey_medium(100, 0.5f)));
     const std::vector<TestLight> lights = published_lights();
-    const MediumProfile profile = make_medium_profile(*setup.scene.materials[0].medium, 0, {});
+    const MediumProfile profile = make_medium_profile(*setup.scene.materials[0].medium);
     const SurfaceIntegral integral = make_surface_integral(setup.scene, 0, profile);
     const SunRays suns = make_sun_rays(lights, 4);
     const SmoothLights smooth = make_smooth_lights(lights);

@@ -81,7 +81,7 @@ MediumProfile classic_profile(double sigma_s, double sigma_a, double eta) {
     medium.sigma_a = {a, a, a};
     medium.eta = static_cast<float>(eta);
     medium.profile = formats::Medium::Profile::classic;
-    return make_medium_profile(medium, 0, {});
+    return make_medium_profile(medium);
 }
 
 double gather(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 x, glm::vec3 n,

@@ -7,7 +7,8 @@
 
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_walk.h"
+#include "bake/scattering/half_space_once.h"
+#include "bake/slab/even_light.h"
 
 namespace opaline::bake {
 namespace {
@@ -26,7 +27,7 @@ Medium make_medium(formats::Rgb sigma_s, formats::Rgb sigma_a, float eta) {
 
 TEST(GatherProfile, TableOfDenseSamplesIsTheProfileItself) {
     const MediumProfile p =
-        make_medium_profile(make_medium({2190, 2620, 3000}, {2.1f, 4.1f, 7.1f}, 1.5f), 0, {});
+        make_medium_profile(make_medium({2190, 2620, 3000}, {2.1f, 4.1f, 7.1f}, 1.5f));
     const GatherProfile dense = make_gather_profile(p, 0.5 * p.smallest, 0.3);
     EXPECT_EQ(dense.near_radius, 0);
     for (double r = 0; r < 0.29; r = 1.3 * r + 1e-5) {
@@ -45,7 +46,7 @@ TEST(GatherProfile, FarAndNearPartTogetherAreTheTotal) {
                                        Medium::Profile::beams, Medium::Profile::normalized}) {
         Medium medium = make_medium({900, 500, 2000}, {2, 50, 5}, 1.3f);
         medium.profile = kind;
-        const MediumProfile p = make_medium_profile(medium, 0, {});
+        const MediumProfile p = make_medium_profile(medium);
         for (const double spacing : {0.3, 2.0, 30.0}) {
             const double h = spacing * p.smallest, reach = 3e4 * p.smallest;
             const GatherProfile split = make_gather_profile(p, h, reach);
@@ -70,28 +71,26 @@ TEST(GatherProfile, FarAndNearPartTogetherAreTheTotal) {
 TEST(MediumProfile, NormalizedDiffusionHasTheWholeResponse) {
     Medium medium = make_medium({800, 950, 100}, {200, 50, 900}, 1.3f);
     medium.profile = Medium::Profile::normalized;
-    const MediumProfile p = make_medium_profile(medium, 0, {});
+    const MediumProfile p = make_medium_profile(medium);
     const double escape = 1 - fresnel_moments(1.3f).external;
-    const auto walked = walk_half_space(0.8, 0, 1.3, 200000, 9, {});
-    EXPECT_NEAR(p.total(0) * escape, walked.once + walked.rest, 4e-3);
+    const auto returned = half_space_reflectance(0.8, 0, 1.3);
+    EXPECT_NEAR(p.total(0) * escape, returned.once + returned.rest, 4e-3);
 }
 
-TEST(MediumProfile, HalfSpaceReturnsWhatTheRandomWalkDoes) {
-    const MediumProfile p =
-        make_medium_profile(make_medium({800, 500, 0}, {200, 500, 10}, 1.3f), 0, {});
+TEST(MediumProfile, HalfSpaceReturnsWhatTheSolverSays) {
+    const MediumProfile p = make_medium_profile(make_medium({800, 500, 0}, {200, 500, 10}, 1.3f));
     const double escape = 1 - fresnel_moments(1.3f).external;
-    EXPECT_NEAR(p.total(0) * escape, walk_half_space(0.8, 0, 1.3, 200000, 9, {}).rest, 3e-3);
-    EXPECT_NEAR(p.total(1) * escape, walk_half_space(0.5, 0, 1.3, 200000, 9, {}).rest, 3e-3);
+    EXPECT_NEAR(p.total(0) * escape, half_space_reflectance(0.8, 0, 1.3).rest, 3e-3);
+    EXPECT_NEAR(p.total(1) * escape, half_space_reflectance(0.5, 0, 1.3).rest, 3e-3);
     EXPECT_EQ(p.total(2), 0) << "what does not scatter returns nothing";
 }
 
 TEST(MediumProfile, WithoutAbsorptionNothingIsLost) {
     // Multiple and single parts sum to all entering light (scattering/README.md, "Energy match").
     for (const float eta : {1.0f, 1.3f, 1.5f}) {
-        const MediumProfile p = make_medium_profile(make_medium({5, 5, 5}, {0, 0, 0}, eta), 0, {});
+        const MediumProfile p = make_medium_profile(make_medium({5, 5, 5}, {0, 0, 0}, eta));
         const double escape = 1 - fresnel_moments(static_cast<double>(eta)).external;
-        const double single =
-            walk_half_space(1e-3, 0, static_cast<double>(eta), 200000, 4, {}).once / 1e-3;
+        const double single = half_space_once(static_cast<double>(eta));
         EXPECT_NEAR(p.total(0) * escape + single, escape, 8e-3) << eta;
     }
 }
@@ -99,18 +98,18 @@ TEST(MediumProfile, WithoutAbsorptionNothingIsLost) {
 TEST(MediumProfile, ClassicAndPaperAreLeftAsTheyAre) {
     Medium medium = make_medium({2190, 2620, 3000}, {2.1f, 4.1f, 7.1f}, 1.5f);
     medium.profile = Medium::Profile::classic;
-    const MediumProfile classic = make_medium_profile(medium, 0, {});
+    const MediumProfile classic = make_medium_profile(medium);
     EXPECT_NEAR(classic.total(0), 0.83031, 1e-4);
     EXPECT_NEAR(classic.exit, 1 - 0.091778, 1e-5);
     medium.fidelity = Medium::Fidelity::paper;
-    EXPECT_EQ(make_medium_profile(medium, 0, {}).exit, 1);
+    EXPECT_EQ(make_medium_profile(medium).exit, 1);
 }
 
 TEST(MediumProfile, AnisotropyReducesScattering) {
     Medium medium = make_medium({1000, 1000, 1000}, {1, 1, 1}, 1.3f);
     medium.profile = Medium::Profile::classic;
     medium.phase = {formats::PhaseFunction::Type::henyey_greenstein, 0.8f, 0, {}, {}};
-    EXPECT_NEAR(make_medium_profile(medium, 0, {}).smallest, 1 / 201.0, 1e-6);
+    EXPECT_NEAR(make_medium_profile(medium).smallest, 1 / 201.0, 1e-6);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(OtherLightOfMedia, EntersThroughSamplesAsTheEnvironmentDoes) {
     formats::Medium medium;
     medium.sigma_s = {4, 4, 4};
     medium.sigma_a = {0.1f, 0.1f, 0.1f};
-    const MediumProfile profile = make_medium_profile(medium, 0, {});
+    const MediumProfile profile = make_medium_profile(medium);
     const GatherProfile gather = make_gather_profile(profile, 0.15, 10);
     const ClusterTree plain =
         build_cluster_tree(setup.samples, setup.bake(nullptr), kSize, kAllOfThem, {});

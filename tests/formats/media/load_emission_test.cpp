@@ -58,7 +58,7 @@ class LoadEmission : public testing::Test {
                                                                   Scene& scene) {
         formats::MediaFile media;
         media.volumes = {e};
-        return formats::load_volumes(media, 1, scene, {.reader = OPALINE_PROGRAM});
+        return formats::load_volumes(media, 1, scene, {.reader = OPALINE_VDB_READER});
     }
     static std::string fault(const VolumeEntry& e) {
         Scene scene;

@@ -46,7 +46,7 @@ class LoadVolumes : public testing::Test {
     const TemporaryFolder folder_;
 };
 
-const formats::VdbReadOptions kReader{.reader = OPALINE_PROGRAM};
+const formats::VdbReadOptions kReader{.reader = OPALINE_VDB_READER};
 
 Result<std::vector<formats::Diagnostic>> load(const MediaFile& media, double unit, Scene& scene) {
     return formats::load_volumes(media, unit, scene, kReader);

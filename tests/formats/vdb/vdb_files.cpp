@@ -164,7 +164,7 @@ void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
 }
 
 formats::VdbReadOptions with_program() {
-    return {.reader = OPALINE_PROGRAM,
+    return {.reader = OPALINE_VDB_READER,
             .memory_bytes = 1ull << 30,
             .cpu_seconds = 60,
             .wall_seconds = 180};
