@@ -109,7 +109,7 @@ typedef struct opaline_gl_surface {
     /* Translucent and glossy: a 2D array texture of six layers for opaline_mirrored, filled by each
        relight; else 0. */
     uint32_t mirrored_light;
-    float lobe[2]; /* for opaline_mirrored */
+    float lobe[2]; /* for opaline_mirrored and opaline_translucent */
 
     /* Column by column, as glUniformMatrix3fv takes it: of the light that relit last. */
     float light_from_world[9];

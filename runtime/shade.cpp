@@ -120,7 +120,7 @@ Rgb shade_translucent(const Job& job, std::uint32_t vertex, std::span<const Rgb>
         const Rgb radiance = point.radiance * point.base_color;
         return {finite(radiance.r), finite(radiance.g), finite(radiance.b)};
     }
-    if (job.material.lobe.radiance != nullptr) set_openness(job, vertex, point);
+    if (job.material.lobe.is_glossy) set_openness(job, vertex, point);
     set_own_light(job.asset, job.material, texcoord_of(job, vertex), point);
     return shade_surface(job.material, point);
 }

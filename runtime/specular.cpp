@@ -37,18 +37,17 @@ SpecularLobe lobe_of_alpha(float alpha) {
     return lobe;
 }
 
-SpecularLobe specular_lobe(const SpecularLight& light, const formats::AssetView& asset,
+SpecularLobe specular_lobe(const SpecularLight* light, const formats::AssetView& asset,
                            std::size_t primitive) {
-    SpecularLobe lobe;
-    if (asset.roughness.empty() || !(asset.roughness[primitive] >= 0)) return lobe;
+    if (asset.roughness.empty() || !(asset.roughness[primitive] >= 0)) return {};
     const std::uint32_t level = roughness_level(asset.roughness[primitive]);
-    for (const SpecularLight::Map& map : light.maps) {
+    const float roughness = static_cast<float>(level) / kRoughnessSteps;
+    SpecularLobe lobe = lobe_of_alpha(roughness * roughness);
+    lobe.is_glossy = true;
+    if (light == nullptr) return lobe;
+    for (const SpecularLight::Map& map : light->maps) {
         if (map.level == level) lobe.radiance = &map.radiance;
     }
-    const float roughness = static_cast<float>(level) / kRoughnessSteps;
-    const SpecularLobe cone = lobe_of_alpha(roughness * roughness);
-    lobe.cosine = cone.cosine;
-    lobe.sine = cone.sine;
     return lobe;
 }
 
@@ -65,15 +64,15 @@ float specular_visibility(Vec3 axis, float open, Vec3 mirrored, const SpecularLo
     return 1 - (1 - inside) * (1 - fourth * fourth);
 }
 
-Rgb eval_specular(const SpecularLight& light, const SpecularLobe& lobe, const ViewOfReceiver& view,
-                  float eta, Vec3 axis, float open) {
+MirroredShares mirrored_shares(const SpecularLobe& lobe, const ViewOfReceiver& view, float eta,
+                               Vec3 axis, float open) {
     constexpr float kFade = 0.2f;
     const Vec3 n = view.normal;
-    if (lobe.radiance == nullptr || !(dot(n, n) > 0) || !(view.cosine > -kFade)) return {};
+    if (!lobe.is_glossy || !(dot(n, n) > 0) || !(view.cosine > -2 * kFade)) return {};
     // Not 0, where everything is reflected even of a boundary of index 1, which reflects nothing.
     constexpr float kLeastCosine = 1e-6f;
     const float c = std::clamp(view.cosine, kLeastCosine, 1.0f);
-    const float fade = 1 + std::min(view.cosine, 0.0f) / kFade;
+    const float behind = std::max(-view.cosine, 0.0f) / kFade;
     Vec3 mirrored = 2 * c * n - view.to_eye;
     const float norm = length(mirrored);
     if (!(norm > 0) || !std::isfinite(norm)) return {};
@@ -81,9 +80,17 @@ Rgb eval_specular(const SpecularLight& light, const SpecularLobe& lobe, const Vi
     if (view.is_turned) {
         axis = axis - 2 * dot(axis, n) * n;
     }
-    const float share = fade * (1 - fresnel_transmittance(c, eta)) *
-                        specular_visibility(axis, open, mirrored, lobe);
-    return share * formats::sample_map(*lobe.radiance, light.rotation.light_from_world(mirrored));
+    const float sky = std::max(1 - behind, 0.0f) * specular_visibility(axis, open, mirrored, lobe);
+    const float mirrors = 1 - fresnel_transmittance(c, eta);
+    return {mirrored, mirrors * sky, mirrors * std::min(2 - behind, 1.0f) * (1 - sky)};
+}
+
+Rgb eval_specular(const SpecularLight& light, const SpecularLobe& lobe, const ViewOfReceiver& view,
+                  float eta, Vec3 axis, float open) {
+    const MirroredShares shares = mirrored_shares(lobe, view, eta, axis, open);
+    if (lobe.radiance == nullptr || !(shares.sky > 0)) return {};
+    return shares.sky *
+           formats::sample_map(*lobe.radiance, light.rotation.light_from_world(shares.direction));
 }
 
 }  // namespace opaline::runtime

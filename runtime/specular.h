@@ -14,11 +14,16 @@ namespace opaline::runtime {
 
 /// Specular reflection of distant light by translucent surfaces, for each glossy receiver
 ///
-///     L_spec = F(c; eta) * v * Lconv(2 c n - w_o),    F = 1 - Ft, c = n.w_o,
+///     L_spec = F(c; eta) * (v * Lconv(2 c n - w_o) + (1 - v) * L_own),    F = 1 - Ft, c = n.w_o,
 ///
 /// Lconv: the environment convolved with the lobe of the surface's roughness (SpecularLight); v:
-/// the part of the lobe that is not blocked, from openness (specular_visibility). White light and
-/// an open receiver give F, so that with Ft <T, 1> no energy is made.
+/// the part of the lobe that is not blocked, from openness (specular_visibility); L_own: light of
+/// the receiver itself before its boundary, <T, L> with view terms and base colour. White light
+/// and an open receiver give F, so that with Ft <T, 1> no energy is made.
+///
+/// L_own stands for what blocks the lobe, which no row of the receiver knows: folds mirror their
+/// own body, and other surfaces nearby stand in the same light. At silhouettes, where F is 1 and
+/// Ft 0, black instead of it drew a dark line around every body on a floor.
 
 /// The roughness of a primitive is rounded to a step of 1 / kRoughnessSteps, so that a file can
 /// make a runtime hold a few maps only.
@@ -87,11 +92,13 @@ SpecularLight prefilter_specular(const formats::Environment& environment,
 struct SpecularLobe {
     const formats::Environment* radiance = nullptr;  ///< nothing: no specular reflection
     float cosine = 1, sine = 0;  ///< of the half angle in which half of the lobe lies: 2 atan alpha
+    bool is_glossy = false;      ///< whether the primitive mirrors anything
 };
 /// Its cone, without radiance; alpha below 0.05 counts as 0.05: openness resolves no sharper edge.
 SpecularLobe lobe_of_alpha(float alpha);
-/// Nothing where the primitive is not glossy or `light` has no map of its level.
-SpecularLobe specular_lobe(const SpecularLight& light, const formats::AssetView& asset,
+/// Not glossy: a cone of nothing. Without `light`, or where it has no map of its level, without
+/// radiance.
+SpecularLobe specular_lobe(const SpecularLight* light, const formats::AssetView& asset,
                            std::size_t primitive);
 
 /// The part of a lobe around the unit direction `mirrored` that reaches a receiver which sees the
@@ -102,15 +109,23 @@ SpecularLobe specular_lobe(const SpecularLight& light, const formats::AssetView&
 /// axis.mirrored between cos(a + s) and cos(a - s), times min(1, (1 - cos a) / (1 - cos s)), which
 /// is about the share of the lobe inside the visible cone,
 ///     v = 1 - (1 - t) (1 - open^8).
-/// Limits: a cone has no shape, so a wall and a pit of the same openness shadow alike; nothing says
-/// what is mirrored instead: blocked light is black, not the blocker's.
+/// Limits: a cone has no shape, so a wall and a pit of the same openness shadow alike.
 float specular_visibility(formats::Vec3 axis, float open, formats::Vec3 mirrored,
                           const SpecularLobe& lobe);
 
-/// L_spec as above, finite and not negative. `axis` as stored (of the front side), unit or zero.
-/// The back of a double-sided primitive is as open as its front. A receiver without a normal is
-/// black. Behind a silhouette (c < 0), where interpolated normals of visible points end up, it
-/// counts as mirroring at c = 0 and fades to black at c = -0.2.
+/// What a boundary mirrors toward the eye.
+struct MirroredShares {
+    formats::Vec3 direction;  ///< that the lobe lies around; unit, or zero where both shares are 0
+    float sky = 0, own = 0;   ///< F v and F (1 - v)
+};
+/// `axis` as stored (of the front side), unit or zero. The back of a double-sided primitive is as
+/// open as its front. A receiver without a normal mirrors nothing. Behind a silhouette (c < 0),
+/// where interpolated normals of visible points end up, it counts as mirroring at c = 0. From there
+/// to c = -0.2 own light takes the place of the sky's, and fades to black at c = -0.4.
+MirroredShares mirrored_shares(const SpecularLobe& lobe, const ViewOfReceiver& view, float eta,
+                               formats::Vec3 axis, float open);
+
+/// The sky's part of L_spec, finite and not negative.
 formats::Rgb eval_specular(const SpecularLight& light, const SpecularLobe& lobe,
                            const ViewOfReceiver& view, float eta, formats::Vec3 axis, float open);
 

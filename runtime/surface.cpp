@@ -10,7 +10,9 @@ using formats::Rgb;
 
 Rgb shade_translucent(const SurfaceMaterial& material, const SurfacePoint& point) {
     const float eta = material.primitive->eta;
-    const Rgb inside = displayable(fresnel_transmittance(point.view.cosine, eta) *
+    const MirroredShares mirrored =
+        mirrored_shares(material.lobe, point.view, eta, point.open_axis, point.open_fraction);
+    const Rgb inside = displayable((fresnel_transmittance(point.view.cosine, eta) + mirrored.own) *
                                    (point.radiance * point.base_color));
     if (material.lobe.radiance == nullptr) return inside;
     return displayable(inside + eval_specular(*material.light, material.lobe, point.view, eta,
@@ -61,8 +63,8 @@ SurfaceMaterial surface_material(const formats::AssetView& asset, std::size_t pr
     }
     if (light != nullptr && has_any(terms, formats::TermSet::specular)) {
         material.light = light;
-        material.lobe = specular_lobe(*light, asset, primitive);
     }
+    material.lobe = specular_lobe(material.light, asset, primitive);
     return material;
 }
 

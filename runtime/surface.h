@@ -22,9 +22,9 @@ struct SurfaceMaterial {
     const formats::PrimitiveRecord* primitive = nullptr;
     const formats::GlossRecord* gloss = nullptr;  ///< of a glossy opaque primitive; else nothing
     const SpecularLight* light = nullptr;         ///< nothing: no specular reflection is added
-    SpecularLobe lobe;                            ///< of a glossy translucent primitive
-    const formats::OwnLight* own = nullptr;       ///< nothing: it sends out no light that is shown
-    formats::Rgb own_radiance;  ///< under the emitters' colours, without its image
+    SpecularLobe lobe;  ///< of a glossy translucent primitive; no radiance without `light`
+    const formats::OwnLight* own = nullptr;  ///< nothing: it sends out no light that is shown
+    formats::Rgb own_radiance;               ///< under the emitters' colours, without its image
 };
 
 /// `light`: as SoftwareOptions::specular. Without TermSet::specular in `terms` none is used.
@@ -61,7 +61,8 @@ inline formats::Rgb displayable(formats::Rgb c) {
 }
 
 /// Outgoing radiance toward the eye, finite and not negative: diffuse base_color * radiance;
-/// translucent base_color * Ft * radiance, plus what the boundary mirrors; glossy opaque
+/// translucent base_color * Ft * radiance, plus what the boundary mirrors of the sky and, where it
+/// is blocked, of base_color * radiance (specular.h); glossy opaque
 /// base_color * radiance * (1 - metallic) (1 - max E), plus the specular lobe. Rows of a metal
 /// (metallic 1 without an image) hold what surfaces send to it: where its lobe is blocked it
 /// mirrors their mean radiance, E (1 - v) / (1 - a) radiance, v what openness leaves of the lobe

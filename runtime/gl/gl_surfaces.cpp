@@ -189,7 +189,7 @@ void set_mirroring(const DrawScene& scene, GLuint program, std::size_t primitive
     const SpecularLight& light = scene.specular.light;
     formats::AssetView asset;  // as much of it as a lobe depends on
     asset.roughness = scene.asset.roughness;
-    const SpecularLobe lobe = specular_lobe(light, asset, primitive);
+    const SpecularLobe lobe = specular_lobe(&light, asset, primitive);
     const bool shows = lobe.radiance != nullptr && has_any(scene.terms, TermSet::specular);
     set_light_from_world(scene.mirror_rotation, program, kLightFromWorld);
     glProgramUniform2f(program, kLobe, lobe.cosine, lobe.sine);

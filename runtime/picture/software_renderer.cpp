@@ -138,7 +138,7 @@ SurfacePoint point_at(const Job& job, const GridTriangle& triangle,
             point.base_color * sample_image_linear(job.asset.images[primitive.base_color_image], uv,
                                                    primitive.wrap_u, primitive.wrap_v);
     }
-    const bool is_glossy = material.gloss != nullptr || material.lobe.radiance != nullptr;
+    const bool is_glossy = material.gloss != nullptr || material.lobe.is_glossy;
     const auto* const map = job.asset.normal_maps.of(triangle.primitive);
     const bool is_mapped_sheet = map != nullptr && primitive.shading == formats::Shading::sheet;
     if (is_glossy || is_mapped_sheet || primitive.shading == formats::Shading::translucent) {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "formats/opal/cubemap.h"
+#include "runtime/surface.h"
 #include "tests/runtime/light_test_support.h"
 #include "tests/runtime/shade_test_support.h"
 
@@ -161,7 +162,7 @@ TEST(Specular, OpenReceiverUnderWhiteMirrorsWhatItDoesNotLetThrough) {
         const Asset asset = make_mirror_asset(roughness);
         const SpecularLight light =
             prefilter_specular(tests::even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
-        const SpecularLobe lobe = specular_lobe(light, asset.view(), 0);
+        const SpecularLobe lobe = specular_lobe(&light, asset.view(), 0);
         ASSERT_NE(lobe.radiance, nullptr);
         for (float c = 0.01f; c <= 1; c += 0.03f) {
             const Rgb mirrored = eval_specular(light, lobe, tests::seen_at(c), 1.5f, {0, 1, 0}, 1);
@@ -181,7 +182,7 @@ TEST(Specular, MirrorsTheLightWhereTheLawOfReflectionSaysAndTurnsWithIt) {
     for (const float turn : {0.0f, 0.9f}) {
         const Rotation rotation = rotation_about_y(turn);
         const SpecularLight light = prefilter_specular(spot, levels, rotation, 1);
-        const SpecularLobe lobe = specular_lobe(light, asset.view(), 0);
+        const SpecularLobe lobe = specular_lobe(&light, asset.view(), 0);
         const Vec3 lit = rotation.world_from_light({0.6f, 0.8f, 0});  // mirrored about +Y
         const ViewOfReceiver at{{0, 1, 0}, lit, 0.8f, false};
         const ViewOfReceiver aside{
@@ -199,7 +200,7 @@ TEST(Specular, FadesBehindTheSilhouetteAndIsBlackWithoutANormal) {
     const Asset asset = make_mirror_asset(0.2f);
     const SpecularLight light =
         prefilter_specular(tests::even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
-    const SpecularLobe lobe = specular_lobe(light, asset.view(), 0);
+    const SpecularLobe lobe = specular_lobe(&light, asset.view(), 0);
     const auto at = [&](float cosine) {
         return eval_specular(light, lobe, tests::seen_at(cosine), 1.5f, {0, 1, 0}, 1).r;
     };
@@ -207,8 +208,37 @@ TEST(Specular, FadesBehindTheSilhouetteAndIsBlackWithoutANormal) {
     EXPECT_NEAR(at(-0.1f), 0.5f, 1e-4f);
     EXPECT_EQ(at(-0.2f), 0);
     EXPECT_EQ(at(-1.0f), 0);
+    const auto own = [&](float cosine) {
+        return mirrored_shares(lobe, tests::seen_at(cosine), 1.5f, {0, 1, 0}, 1).own;
+    };
+    EXPECT_EQ(own(0.5f), 0);
+    EXPECT_NEAR(own(-0.1f), 0.5f, 1e-4f);
+    EXPECT_NEAR(own(-0.2f), 1, 1e-4f);
+    EXPECT_NEAR(own(-0.3f), 0.5f, 1e-4f);
+    EXPECT_EQ(own(-0.4f), 0);
     EXPECT_EQ(eval_specular(light, lobe, {{0, 0, 0}, {0, 1, 0}, 0, false}, 1.5f, {0, 1, 0}, 1),
               Rgb{});
+}
+
+// Under light of radiance 1 a body that absorbs nothing shows 1, from wherever it is seen and
+// whatever it stands beside: what blocks the sky in its mirror shows 1 as well. Silhouettes before
+// a floor, where F is 1, were black lines before.
+TEST(Specular, SilhouettesOfABodyThatStandsOnAFloorAreNotDark) {
+    const Asset asset = make_mirror_asset(0.2f);
+    const SpecularLight light =
+        prefilter_specular(tests::even_sky({1, 1, 1}), roughness_levels(asset.view()), {}, 1);
+    const EmitterLight none = dark_emitters();
+    const SurfaceMaterial material = surface_material(asset.view(), 0, TermSet::all, &light, none);
+    for (const float open : {0.0f, 0.3f, 0.6f, 1.0f}) {
+        for (float c = -0.19f; c <= 1; c += 0.01f) {
+            SurfacePoint point;
+            point.radiance = point.base_color = {1, 1, 1};
+            point.view = tests::seen_at(c);
+            point.open_axis = normalize(Vec3{0.2f, 1, 0});
+            point.open_fraction = open;
+            EXPECT_NEAR(shade_surface(material, point).g, 1, 1e-5f) << c << ", open " << open;
+        }
+    }
 }
 
 TEST(Specular, ShadingAddsItToGlossyPrimitivesAloneAndOnlyWithItsLight) {
@@ -223,8 +253,8 @@ TEST(Specular, ShadingAddsItToGlossyPrimitivesAloneAndOnlyWithItsLight) {
         return tests::shaded(asset, light, options);
     };
     const Vec3 eye{0, 0, 5};
+    EXPECT_EQ(shaded(matt, {.eye = eye, .specular = &specular}), shaded(matt, {.eye = eye}));
     const auto bare = shaded(glossy, {.eye = eye});
-    EXPECT_EQ(shaded(matt, {.eye = eye, .specular = &specular}), bare);
     const auto with = shaded(glossy, {.eye = eye, .specular = &specular});
     const auto alone =
         shaded(glossy, {.eye = eye, .terms = TermSet::specular, .specular = &specular});
@@ -233,7 +263,7 @@ TEST(Specular, ShadingAddsItToGlossyPrimitivesAloneAndOnlyWithItsLight) {
         EXPECT_NEAR(with[v].g, bare[v].g + alone[v].g, 1e-6f * with[v].g);
         const ViewOfReceiver view =
             view_receiver(glossy.primitives[0], glossy.position[v], glossy.normal[v], eye);
-        const Rgb expected = eval_specular(specular, specular_lobe(specular, glossy.view(), 0),
+        const Rgb expected = eval_specular(specular, specular_lobe(&specular, glossy.view(), 0),
                                            view, 1.5f, formats::open_axis(glossy.openness[v]), 1);
         EXPECT_EQ(alone[v], expected);
         lit += alone[v].g > 0 ? 1u : 0u;

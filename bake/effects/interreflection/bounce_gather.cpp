@@ -1,8 +1,7 @@
 #include "bake/effects/interreflection/bounce_gather.h"
 
-#include <utility>
-
 #include "bake/effects/interreflection/bounce_rays.h"
+#include "bake/effects/interreflection/mirrored_cells.h"
 
 namespace opaline::bake {
 namespace {
@@ -113,7 +112,7 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
     std::vector<BounceEnd> ends;
     BounceGather gathered;
     gathered.rays = find_bounce_ends(scene, rays, at, grid, seed, ends);
-    std::vector<MirroredRay> mirrored;
+    MirroredCells mirrored(scene, rays, at, frame, grid, seed);
     for (const BounceEnd& end : ends) {
         if (!end.is_met) continue;
         const float share =
@@ -124,12 +123,8 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
         const BounceCell& cell = (end.is_quarter ? grid.quarters : grid.cells)[end.cell];
         const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
         const FootprintKernel kernel = footprint_of(at.origin, end, cell, frame);
+        mirrored.add(end, share);
         const glm::vec3 y = at.origin + end.distance * end.direction;
-        const MirroredRay ray =
-            mirror(scene, {y, end.direction, end.error, end.material, end.side}, share, 0);
-        if (ray.share > 0) {
-            mirrored.push_back(ray);
-        }
         const std::uint32_t node = tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
         if (node == formats::kNone ||
             (look_up == LookUp::kernel &&
@@ -138,11 +133,7 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
         }
         weights.push_back({node, share});
     }
-    std::vector<MirroredNode> found;
-    gathered.rays += follow_mirrored(scene, rays, tree, std::move(mirrored), found);
-    for (const MirroredNode& seen : found) {
-        weights.push_back({seen.node, seen.share});
-    }
+    gathered.rays += mirrored.follow(tree, weights);
     std::ranges::sort(weights, {}, &NodeWeight::node);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -88,6 +89,7 @@ void BounceTree::set_sky() {
     if (row_size_ == 0 || row_size_ % kSkyTexels != 0) return;
     rows_.resize(nodes_.size() + kSkyTexels);
     const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
+    sky_solid_angles_.assign(face.begin(), face.end());
     std::vector<float> row(row_size_);
     for (std::size_t t = 0; t < kSkyTexels; ++t) {
         for (std::size_t band = 0; band < row_size_; band += kSkyTexels) {
@@ -105,6 +107,12 @@ std::uint32_t BounceTree::sky_node(glm::vec3 direction) const {
                ? formats::kNone
                : static_cast<std::uint32_t>(nodes_.size()) +
                      formats::texel_index(kBounceCubemap, {direction.x, direction.y, direction.z});
+}
+
+float BounceTree::solid_angle_of_sky(std::uint32_t node) const {
+    return node < nodes_.size()
+               ? std::numeric_limits<float>::infinity()
+               : sky_solid_angles_[(node - nodes_.size()) % sky_solid_angles_.size()];
 }
 
 float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,

@@ -73,6 +73,8 @@ class BounceTree {
     /// The node of the sky in a direction, whose row is what a surface of its radiance sends out:
     /// pi times the mean over its texel. formats::kNone where rows are no cube maps.
     std::uint32_t sky_node(glm::vec3 direction) const;
+    /// Solid angle [sr] of the texel of a node of the sky; of other nodes infinity.
+    float solid_angle_of_sky(std::uint32_t node) const;
     /// Of each scatterer, the area of its part of the surface [m^2].
     std::vector<float> cells() const;
     /// All scatterers, such that neighbours in space are mostly neighbours in the list.
@@ -116,8 +118,9 @@ class BounceTree {
     void average(std::size_t node, std::span<const float> first, std::span<float> second) const;
 
     std::vector<Node> nodes_;
-    std::vector<Extent> extents_;       // of nodes
-    std::vector<std::uint32_t> roots_;  // by material, side and axis
+    std::vector<Extent> extents_;          // of nodes
+    std::vector<std::uint32_t> roots_;     // by material, side and axis
+    std::vector<float> sky_solid_angles_;  // [sr], of the texels of a face
     CodedRows rows_;
     std::size_t row_size_;
 };

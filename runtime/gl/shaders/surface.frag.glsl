@@ -111,7 +111,9 @@ void main() {
 #endif
     view = opaline_view_mapped(view, mapped);
 #endif
-#ifdef TRANSLUCENT
+#ifdef MIRRORING
+    radiance = opaline_translucent(radiance, base_color, view, eta, v_open, lobe);
+#elif defined(TRANSLUCENT)
     radiance = opaline_translucent(radiance, base_color, view, eta);
 #elif defined(GLOSS)
     Gloss g = make_gloss(f0_f90, gloss_factors(), base_color);

@@ -111,7 +111,7 @@ vec3 opaline_diffuse(vec3 radiance, vec3 base_color) {
     return opaline_displayable(radiance * base_color);
 }
 
-// What comes out of translucent surfaces; opaline_mirrored comes on top.
+// What comes out of translucent surfaces that mirror nothing.
 vec3 opaline_translucent(vec3 radiance, vec3 base_color, OpalineView view, float eta) {
     return opaline_displayable(opaline_transmittance(view.cosine, eta) * (radiance * base_color));
 }
@@ -135,18 +135,43 @@ float opaline_specular_visibility(vec3 axis, float open, vec3 mirrored, vec2 lob
     return 1.0 - (1.0 - inside) * (1.0 - fourth * fourth);
 }
 
-// What the boundary of a glossy translucent surface mirrors: eval_specular. `light`: the
+// What the boundary of a glossy translucent surface mirrors: mirrored_shares. `direction`: unit, or
+// zero where it mirrors nothing.
+struct OpalineMirror {
+    vec3 direction;
+    float sky, own;
+};
+
+OpalineMirror opaline_mirror(OpalineView view, float eta, vec4 openness, vec2 lobe) {
+    OpalineMirror mirror = OpalineMirror(vec3(0.0), 0.0, 0.0);
+    vec3 n = view.normal;
+    if (!(dot(n, n) > 0.0) || !(view.cosine > -0.4)) return mirror;
+    float c = clamp(view.cosine, 1e-6, 1.0);
+    float behind = max(-view.cosine, 0.0) / 0.2;
+    mirror.direction = opaline_unit_or_zero(2.0 * c * n - view.to_eye);
+    if (!(dot(mirror.direction, mirror.direction) > 0.0)) return mirror;
+    float sky = max(1.0 - behind, 0.0) *
+                opaline_specular_visibility(opaline_open_axis(openness, view),
+                                            clamp(openness.w, 0.0, 1.0), mirror.direction, lobe);
+    float mirrors = 1.0 - opaline_transmittance(c, eta);
+    mirror.sky = mirrors * sky;
+    mirror.own = mirrors * min(2.0 - behind, 1.0) * (1.0 - sky);
+    return mirror;
+}
+
+// What comes out of glossy translucent surfaces, with what their boundary mirrors of light like it
+// where it does not see the sky; opaline_mirrored comes on top.
+vec3 opaline_translucent(vec3 radiance, vec3 base_color, OpalineView view, float eta, vec4 openness,
+                         vec2 lobe) {
+    float share = opaline_transmittance(view.cosine, eta) + opaline_mirror(view, eta, openness, lobe).own;
+    return opaline_displayable(share * (radiance * base_color));
+}
+
+// What the boundary of a glossy translucent surface mirrors of the sky: eval_specular. `light`: the
 // environment, convolved for its roughness, in the light's frame.
 vec3 opaline_mirrored(sampler2DArray light, mat3 light_from_world, OpalineView view, float eta,
                       vec4 openness, vec2 lobe) {
-    vec3 n = view.normal;
-    if (!(dot(n, n) > 0.0) || !(view.cosine > -0.2)) return vec3(0.0);
-    float c = clamp(view.cosine, 1e-6, 1.0);
-    float fade = 1.0 + min(view.cosine, 0.0) / 0.2;
-    vec3 mirrored = opaline_unit_or_zero(2.0 * c * n - view.to_eye);
-    if (!(dot(mirrored, mirrored) > 0.0)) return vec3(0.0);
-    float share = fade * (1.0 - opaline_transmittance(c, eta)) *
-                  opaline_specular_visibility(opaline_open_axis(openness, view),
-                                              clamp(openness.w, 0.0, 1.0), mirrored, lobe);
-    return share * opaline_sample_cube(light, light_from_world * mirrored);
+    OpalineMirror mirror = opaline_mirror(view, eta, openness, lobe);
+    if (!(mirror.sky > 0.0)) return vec3(0.0);
+    return mirror.sky * opaline_sample_cube(light, light_from_world * mirror.direction);
 }

@@ -32,11 +32,9 @@ struct BlackMedium {
 
     // E of a point under radiance 1 where `is_lit`.
     template <class IsLit>
-    double irradiance(const Receiver& at, IsLit&& is_lit) const {
+    double irradiance(const Receiver& at, IsLit&& is_lit, std::uint32_t count = 65536) const {
         std::vector<NodeWeight> weights;
-        const BounceGather gathered =
-            weigh_bounces(scene, rays, tree, at, make_bounce_grid(65536), 1, weights);
-        EXPECT_GT(gathered.rays, 65536u);
+        weigh_bounces(scene, rays, tree, at, make_bounce_grid(count), 1, weights);
         std::vector<float> row(kTexels), light(kTexels);
         add_node_rows(tree, weights, row);
         const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
@@ -151,6 +149,52 @@ TEST(MirroredRays, TwoWallsOfACornerMirrorOneAfterTheOther) {
                 fresnel_reflectance(static_cast<double>(-way.x), 1.5) *
                     fresnel_reflectance(static_cast<double>(-way.y), 1.5),
                 1e-6);
+}
+
+// Floor beside a ball, under a small light. What the ball mirrors of it varies smoothly over the
+// floor: a convex mirror spreads light. With a single ray in each of 64 cells, points found the
+// light by chance, and their error was .059 of what they receive of it directly: specks.
+TEST(MirroredRays, ABallThatMirrorsTheSunLeavesNoSpecksOnTheFloor) {
+    const BlackMedium ball({tests::make_sphere(4, 1, {0, 1, 0})});
+    const glm::vec3 sun = glm::normalize(glm::vec3(1, 0.9f, 0.4f));
+    const auto is_lit = [&](glm::vec3 d) { return glm::dot(d, sun) > 0.99f; };
+    const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
+    const double direct = face[0] * double{sun.y};
+    double sum = 0, expected_sum = 0, square = 0;
+    constexpr int kPoints = 10;
+    for (int i = 0; i < kPoints; ++i) {
+        for (int j = 0; j < kPoints; ++j) {
+            const Receiver floor{
+                {1 + 0.1f * static_cast<float>(i), 0, 0.13f * static_cast<float>(j)}, {0, 1, 0}};
+            const double expected = ball.irradiance(floor, is_lit, 16384);
+            const double found = ball.irradiance(floor, is_lit, 64);
+            sum += found;
+            expected_sum += expected;
+            square += (found - expected) * (found - expected);
+        }
+    }
+    constexpr int kAll = kPoints * kPoints;
+    EXPECT_LT(std::sqrt(square / kAll), 0.03 * direct);
+    EXPECT_NEAR(sum, expected_sum, 0.1 * expected_sum);
+}
+
+// Few rays cannot make a texel brighter than a flat mirror shows it: its share of the hemisphere
+// is at most its solid angle over pi. One of 16 rays that grazes a wall had 6.8 times that.
+TEST(MirroredRays, NoTexelIsBrighterInABoundaryThanInAFlatMirror) {
+    const BlackMedium wall({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80}, 1)});
+    const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
+    double most = 0;
+    std::vector<NodeWeight> weights;
+    for (int i = 0; i < 200; ++i) {
+        const Receiver floor{{0.01f * static_cast<float>(1 + i), 0, 0}, {0, 1, 0}};
+        weigh_bounces(wall.scene, wall.rays, wall.tree, floor, make_bounce_grid(16), 1, weights);
+        for (const NodeWeight& w : weights) {
+            const double flat = face[w.node % face.size()] / std::numbers::pi;
+            most = std::max(most, double{w.weight} / flat);
+        }
+    }
+    EXPECT_LE(most, 1.000001);
+    EXPECT_GT(most, 0.2);
 }
 
 TEST(MirroredRays, OpaqueSurfacesAndIndexMatchedMediaMirrorNothingHere) {

@@ -66,7 +66,8 @@ void main() {
     vec3 sent = opaline_diffuse(v_radiance, base_color);
     if (is_translucent) sent = opaline_translucent(v_radiance, base_color, view, eta);
     if (is_mirroring) {
-        sent += opaline_mirrored(mirrored_light, light_from_world, view, eta, v_openness, lobe);
+        sent = opaline_translucent(v_radiance, base_color, view, eta, v_openness, lobe) +
+               opaline_mirrored(mirrored_light, light_from_world, view, eta, v_openness, lobe);
     }
     if (is_glossy) {
         OpalineGloss gloss =
