@@ -174,8 +174,14 @@ std::vector<std::vector<float>> rows_of_points(const BakeInputs& bake, const Kno
         shape_row(alone.front().layout, knobs.cubemap_size, row);
     }
     StageLog unlisted;
-    run_step(Step::samples, bake, knobs, context, alone, unlisted);
-    run_step(Step::prepare, bake, knobs, context, alone, unlisted);
+    // Samples serve these points alone.
+    const ReceiverSet points{.material = alone.front().material,
+                             .outside = {outside.begin(), outside.end()},
+                             .inside = {inside.begin(), inside.end()}};
+    BakeInputs asked = bake;
+    asked.receivers = std::span(&points, 1);
+    run_step(Step::samples, asked, knobs, context, alone, unlisted);
+    run_step(Step::prepare, asked, knobs, context, alone, unlisted);
     for (const StageReport& stage : unlisted) {
         rays += stage.rays;
     }

@@ -64,7 +64,9 @@ Work bounce_rows_work(const SubjectCost& cost) {
 
 // Of scatterers and their light, media left out.
 LightWork bounce_light_work(const CostInput& input) {
-    const auto scatterers = static_cast<double>(count_scatterers(input.knobs));
+    const double scatterers =
+        std::min(static_cast<double>(count_scatterers(input.knobs)),
+                 kHitShare * count_scatterer_rays(static_cast<std::size_t>(input.receivers)));
     LightWork work;
     work.cubemap_size = kBounceCubemap;
     work.points = scatterers;

@@ -106,6 +106,10 @@ SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::s
     return side;
 }
 
+double count_scatterer_rays(std::size_t receivers) {
+    return static_cast<double>(kRaysOfProbe * std::min(receivers, kProbes));
+}
+
 std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
                                        std::uint64_t& rays) {
     const std::vector<Receiver> probes = draw_probes(inputs.bake.scene, inputs.bake.receivers);

@@ -31,6 +31,9 @@ struct SeenSide {
 };
 SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane);
 
+/// Rays that look for scatterers, of a scene with so many receivers.
+double count_scatterer_rays(std::size_t receivers);
+
 /// At most `count` scatterers where cosine-distributed rays of receivers end: as dense as light
 /// from there is looked for. Only on materials whose rows are filled. None where receivers see
 /// nothing. Counts `rays`.

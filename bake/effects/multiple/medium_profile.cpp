@@ -157,13 +157,15 @@ MediumProfile make_medium_profile(const Medium& medium) {
     return profile;
 }
 
-std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
-                            std::uint32_t most) {
-    const double least = kLeastSamplesPerPath * per_path;
-    const double z = profile.smallest;
-    const double wanted = z > 0 ? std::ceil(per_path * area / (z * z)) : 0.0;
-    return static_cast<std::uint32_t>(
-        std::clamp(wanted, std::min(least, static_cast<double>(most)), static_cast<double>(most)));
+std::uint32_t count_samples(double area, double depth, const SampleBudget& budget) {
+    // Resolve the shape of a body that light crosses, and shadows on it of its own parts.
+    constexpr double kLeastPerPath = 2000, kForShadows = 8000;
+    constexpr double kPerReceiver = 5;  // README.md
+    const double least = std::min(kLeastPerPath * budget.per_path, budget.most);
+    const double wanted = depth > 0 ? std::ceil(budget.per_path * area / (depth * depth)) : 0.0;
+    const double shown =
+        budget.per_path * std::max(kForShadows, std::ceil(kPerReceiver * budget.receivers));
+    return static_cast<std::uint32_t>(std::min(std::clamp(wanted, least, budget.most), shown));
 }
 
 ModelError measure_models(const EffectInputs& inputs, const MediumProfile& profile,

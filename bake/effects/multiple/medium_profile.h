@@ -30,14 +30,18 @@ struct MediumProfile {
 /// `classic` is not scaled. `paper` fidelity: the classic dipole as printed, whatever `profile`.
 MediumProfile make_medium_profile(const formats::Medium& medium);
 
-/// Times samples per path: resolves the shape of a body that light crosses.
-inline constexpr double kLeastSamplesPerPath = 2000;
+/// How many samples a surface may have.
+struct SampleBudget {
+    double per_path = 1;   ///< samples per squared depth of the medium's source
+    double most = 0;       ///< in all
+    double receivers = 0;  ///< that read them
+};
 
-/// Number of samples on the surface of a medium: `per_path` per squared depth of its source. At
-/// `per_path` = 1 their sum errs by about 1 % (multiple/README.md, "Sampling"). At least 2000
-/// `per_path`, at most `most`. `area` [m^2].
-std::uint32_t count_samples(double area, const MediumProfile& profile, double per_path,
-                            std::uint32_t most);
+/// Number of samples on the surface of a medium, `area` [m^2]. At `per_path` = 1 for each squared
+/// `depth` [m] of its source their sum errs by about 1 % (multiple/README.md, "Sampling"); 0: it
+/// scatters nothing. Light that receivers are too far apart to show needs no more than some for
+/// each of them, but enough for the shape of the body.
+std::uint32_t count_samples(double area, double depth, const SampleBudget& budget);
 
 /// A relative RMS error, measured before a bake at some receivers under white and three suns that
 /// see each body from different sides. Both sides are Monte Carlo, each estimated twice, so that

@@ -1,5 +1,6 @@
 #include "bake/effects/multiple/multiple.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -107,10 +108,28 @@ bool needs_samples(const formats::Material&, const RowLayout& layout) {
     return !layout.at_entry;
 }
 
+// Places of the material's receivers: none else reads its samples.
+std::vector<BodyPoint> served_by(const EffectInputs& inputs) {
+    std::vector<BodyPoint> served;
+    for (const ReceiverSet& set : inputs.bake.receivers) {
+        if (set.material == inputs.material) {
+            served.insert(served.end(), set.inside.begin(), set.inside.end());
+        }
+    }
+    return served;
+}
+
+// Rows of single points are as fine as those of the file.
+double count_served(const EffectInputs& inputs, std::size_t served) {
+    return std::max(inputs.bake.facts.material[inputs.material].receivers,
+                    static_cast<double>(served));
+}
+
 PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
     const Knobs& knobs = inputs.knobs;
     const bool walks_alone =
         !inputs.bake.has_environment() && takes_walks_alone(inputs.medium(), inputs.layout, knobs);
+    const std::vector<BodyPoint> served = served_by(inputs);
     auto samples = std::make_unique<Samples>();
     samples->stage = prepare_multiple(inputs.bake.scene, inputs.outside(), inputs.bake.rays,
                                       inputs.material, profile_of(inputs.own),
@@ -118,6 +137,8 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        whole(knobs, kSamples),
                                        knobs.is_given(kSamples),
                                        knobs[kSamplesPerPath],
+                                       served,
+                                       count_served(inputs, served.size()),
                                        sample_coefficients(knobs),
                                        knobs.seed,
                                        !knobs.exact_rays,

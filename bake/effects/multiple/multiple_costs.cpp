@@ -88,8 +88,24 @@ double shortest_path(const formats::Medium& medium, const MaterialFacts& body) {
     return shortest_transport_path(media);
 }
 
+// As count_served has it; receivers of rows may be a part of the material's.
+double served_by_samples(const SubjectCost& cost) {
+    return std::max(cost.receivers, cost.facts.receivers);
+}
+
 SitePlan plan_of(const SubjectCost& cost) {
-    return expected_sites(cost.medium(), cost.facts, cost.input.knobs);
+    SitePlan plan = expected_sites(cost.medium(), cost.facts, cost.input.knobs);
+    plan.is_residual = plan.is_residual && !cost.layout.layered;
+    widen_for_receivers(plan, cost.facts.area,
+                        static_cast<double>(glm::length(cost.facts.high - cost.facts.low)),
+                        served_by_samples(cost));
+    return plan;
+}
+
+// Of sites on the surface: the share of it that lies within the radius of a receiver.
+double share_read(const SubjectCost& cost, const SitePlan& plan) {
+    const double radius = (rows_by_view(cost.layout) > 0 ? 2 : 1) * plan.radius;
+    return std::min(1.0, cost.receivers * pi * radius * radius / cost.facts.area);
 }
 
 // What a walk costs in events. Balls save walks of hundreds of events most of them; measured on the
@@ -111,13 +127,11 @@ double count_steps(const formats::Medium& medium, const MaterialFacts& body) {
 
 }  // namespace
 
-double expected_samples(const formats::Medium& medium, double area, const Knobs& knobs) {
-    const double per_path = knobs[kSamplesPerPath];
-    const double least = kLeastSamplesPerPath * per_path;
-    const double most = knobs[kSamples];
-    if (knobs.is_given(kSamples)) return most;
-    const double depth = least_depth(dipoles_of(medium));
-    return std::clamp(per_path * area / (depth * depth), std::min(least, most), most);
+double expected_samples(const formats::Medium& medium, double area, double receivers,
+                        const Knobs& knobs) {
+    if (knobs.is_given(kSamples)) return knobs[kSamples];
+    return count_samples(area, least_depth(dipoles_of(medium)),
+                         {knobs[kSamplesPerPath], knobs[kSamples], receivers});
 }
 
 double count_weights(const formats::Medium& medium, const MaterialFacts& facts, double samples,
@@ -174,7 +188,8 @@ Work profile_work(const SubjectCost& cost) {
 Work samples_work(const SubjectCost& cost) {
     const CostInput& input = cost.input;
     const Knobs& knobs = input.knobs;
-    const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
+    const double samples =
+        expected_samples(cost.medium(), cost.facts.area, served_by_samples(cost), knobs);
     const double own = texels(knobs.cubemap_size);
     Work work{samples * kPlaceSample, 0};
     const double seen = !cost.layout.occluded ? 0.5 * kOpenCell  // half are below the horizon
@@ -194,7 +209,8 @@ Work samples_work(const SubjectCost& cost) {
 
 Work multiple_rows_work(const SubjectCost& cost) {
     const Knobs& knobs = cost.input.knobs;
-    const double samples = expected_samples(cost.medium(), cost.facts.area, knobs);
+    const double samples =
+        expected_samples(cost.medium(), cost.facts.area, served_by_samples(cost), knobs);
     const double weights = count_weights(cost.medium(), cost.facts, samples, knobs[kEpsilon]);
     if (expects_walks(cost.medium(), cost.facts, cost.layout.layered, knobs)) {
         return walked_rows_work(cost);
@@ -256,8 +272,9 @@ Work walks_work(const SubjectCost& cost) {
         return {};
     }
     const SitePlan plan = plan_of(cost);
-    const double walks = std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
-                                  static_cast<double>(plan.sites));
+    const double share = are_inside(cost, plan) ? 1 : share_read(cost, plan);
+    const double walks = share * std::max(count_walks(plan, cost.facts.area, budget_of(knobs)),
+                                          static_cast<double>(plan.sites));
     const double views = are_inside(cost, plan) ? 0 : rows_by_view(cost.layout);
     const double entries =
         kOwnSample * (kCellEntries + (1 + views) * kept_by_samples(knobs)) * kGatherEntry;
@@ -265,10 +282,11 @@ Work walks_work(const SubjectCost& cost) {
     // Measured on Spot: an event with veins to evaluate takes as long as three without.
     const auto& variation = cost.medium().variation;
     const double looked_up = !variation ? 1 : variation->marble ? 3 : 1.5;
-    return {plan.sites * kPlaceSample, walks * (looked_up * count_steps(cost.medium(), cost.facts) *
-                                                    kBodyEvent.at(cost.input.triangles) +
-                                                kExitsPerWalk * (kWalkExit + entries)) +
-                                           plan.sites * (1 + views) * dense * kTruncateTexel};
+    return {plan.sites * kPlaceSample,
+            walks * (looked_up * count_steps(cost.medium(), cost.facts) *
+                         kBodyEvent.at(cost.input.triangles) +
+                     kExitsPerWalk * (kWalkExit + entries)) +
+                share * plan.sites * (1 + views) * dense * kTruncateTexel};
 }
 
 Work walked_rows_work(const SubjectCost& cost) {

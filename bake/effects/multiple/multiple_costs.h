@@ -25,8 +25,9 @@ double count_body_events(const formats::Medium& medium, const MaterialFacts& bod
 Work walks_work(const SubjectCost& cost);
 Work walked_rows_work(const SubjectCost& cost);
 
-/// Number of samples on the surface of a medium.
-double expected_samples(const formats::Medium& medium, double area, const Knobs& knobs);
+/// Number of samples on the surface of a medium, `area` [m^2], for so many receivers.
+double expected_samples(const formats::Medium& medium, double area, double receivers,
+                        const Knobs& knobs);
 
 /// Mean number of nodes and samples that a gather sums for a receiver: a patch over which the
 /// profile changes by less than `tolerance` counts as one.

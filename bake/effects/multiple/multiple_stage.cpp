@@ -92,6 +92,7 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
         .walks = walks,
         .is_inside = is_inside,
         .views = options.views,
+        .served = options.served,
         .rows = {
             .cubemap_size = options.cubemap_size,
             .kept = kept_of(options),
@@ -219,14 +220,16 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     MultipleStage stage;
     stage.medium = medium;
     const double path = shortest_path(scene, material, options);
-    MediumProfile finest = medium;
+    double depth = medium.smallest;
     if (options.layered && path > 0) {
-        finest.smallest = medium.smallest > 0 ? std::min(medium.smallest, path) : path;
+        depth = depth > 0 ? std::min(depth, path) : path;
     }
     const std::uint32_t count =
         options.exact_samples
             ? options.samples
-            : count_samples(area, finest, options.samples_per_path, options.samples);
+            : count_samples(area, depth,
+                            {options.samples_per_path, static_cast<double>(options.samples),
+                             options.receivers});
     const std::vector<SurfaceSample> samples =
         sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
@@ -238,6 +241,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     if (walks) {
         plan = plan_sites(area, diagonal_of(scene, material), path, options.walks);
         plan.is_residual = plan.is_residual && !options.layered;
+        widen_for_receivers(plan, area, diagonal_of(scene, material), options.receivers);
     }
     const bool walks_alone = walks && !plan.is_residual;
     SampleTransport transport =

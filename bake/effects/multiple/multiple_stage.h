@@ -37,8 +37,10 @@ struct MultipleOptions {
     std::uint32_t cubemap_size = 32;
     std::uint32_t samples = 60000;  ///< at most, or exactly
     bool exact_samples = false;
-    double samples_per_path = 1;  ///< count_samples
-    std::uint32_t kept = 128;     ///< coefficients of each sample
+    double samples_per_path = 1;          ///< count_samples
+    std::span<const BodyPoint> served{};  ///< where rows are asked for, and nowhere else
+    double receivers = 0;      ///< as many as these or more: numbers of samples and sites follow it
+    std::uint32_t kept = 128;  ///< coefficients of each sample
     std::uint64_t seed = 0;
     bool share_rays = true;   ///< between neighbouring samples
     std::uint32_t bands = 3;  ///< or 1, where those of the medium coincide

@@ -114,7 +114,8 @@ PlanEntry decide_multiple(const PlanInput& input) {
                            : "the medium absorbs nearly all that it scatters";
         return entry;
     }
-    const double samples = expected_samples(medium, input.subject.area, input.knobs);
+    const double samples =
+        expected_samples(medium, input.subject.area, input.subject.receivers, input.knobs);
     entry.reason = "light scatters many times inside; " +
                    std::to_string(static_cast<std::uint64_t>(samples)) + " surface samples";
     return entry;

@@ -112,5 +112,19 @@ TEST(MediumProfile, AnisotropyReducesScattering) {
     EXPECT_NEAR(make_medium_profile(medium).smallest, 1 / 201.0, 1e-6);
 }
 
+// A body of 1 m^2 whose source lies 1 mm deep.
+TEST(SampleCount, FollowsTheReceiversWhereTheyAreFartherApartThanLightSpreads) {
+    const auto count = [](double per_path, double receivers) {
+        return count_samples(1, 1e-3, {per_path, 1e5, receivers});
+    };
+    EXPECT_EQ(count(1, 1e6), 100000u) << "as many as are allowed";
+    EXPECT_EQ(count(1, 4000), 20000u);
+    EXPECT_EQ(count(4, 4000), 80000u);
+    EXPECT_EQ(count(1, 36), 8000u) << "its parts shade each other, whatever the receivers";
+    EXPECT_EQ(count_samples(1, 0.02, {1, 1e5, 36}), 2500u) << "light spreads farther";
+    EXPECT_EQ(count_samples(1, 0, {1, 1e5, 36}), 2000u) << "nothing scatters";
+    EXPECT_EQ(count_samples(1, 1e-3, {1, 500, 1e6}), 500u);
+}
+
 }  // namespace
 }  // namespace opaline::bake

@@ -38,5 +38,28 @@ TEST(SitePlan, FewWalksAreCountedFartherAroundSoThatNoiseStaysTheSame) {
                 kAround, 0.01 * kAround);
 }
 
+// 100 receivers on 4 m^2 are 0.2 m apart, a tenth of a diagonal of 2 m.
+TEST(SitePlan, WalksAreInProportionToFewReceivers) {
+    constexpr double kArea = 4, kDiagonal = 2, kAround = 1000;
+    const bake::WalkBudget budget{kAround, 1e9, 20000};
+    const bake::SitePlan dense = bake::plan_sites(kArea, kDiagonal, 0.001, budget);
+    ASSERT_TRUE(dense.is_residual);
+    bake::SitePlan plan = dense;
+    bake::widen_for_receivers(plan, kArea, kDiagonal, 1e6);
+    EXPECT_EQ(plan.radius, dense.radius) << "receivers are closer than sites reach";
+    EXPECT_EQ(plan.sites, dense.sites);
+    bake::widen_for_receivers(plan, kArea, kDiagonal, 100);
+    EXPECT_NEAR(plan.radius, 0.2, 1e-9);
+    EXPECT_GT(plan.sites, 100u);
+    EXPECT_LT(plan.sites, 1000u);
+    EXPECT_NEAR(bake::count_walks(plan, kArea, budget), kAround * 100 / std::numbers::pi, 1);
+    bake::widen_for_receivers(plan, kArea, kDiagonal, 1);
+    EXPECT_NEAR(plan.radius, 0.2, 1e-9) << "no wider than a tenth of the body";
+    bake::SitePlan alone = bake::plan_sites(kArea, kDiagonal, 0.05, budget);
+    const double radius = alone.radius;
+    bake::widen_for_receivers(alone, kArea, kDiagonal, 100);
+    EXPECT_EQ(alone.radius, radius) << "what is no residual is not as smooth";
+}
+
 }  // namespace
 }  // namespace opaline::tests

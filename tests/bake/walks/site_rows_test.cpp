@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -117,6 +118,38 @@ TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
         EXPECT_NEAR(sum, 1, 0.03) << inside;
         EXPECT_EQ(stage.counts.walks, 30000u);
         EXPECT_LT(stage.counts.lost, 3u);
+    }
+}
+
+// Walks begin where some receiver reads their row; the rows of receivers are the same, bit by bit.
+TEST(SiteRows, SitesThatNoReceiverReadsTakeNoWalks) {
+    const WalkedBall ball = make_ball(20, 0.9f);
+    const bake::ExitLight light(ball.samples, ball.transport.rows, std::nullopt, ball.escape);
+    constexpr std::uint32_t kSites = 2000;
+    const auto sites = bake::place_sites(ball.body->space, {kSites, 0.1, false}, 0, {});
+    const std::vector<bake::BodyPoint> served{body_point(ball.samples[3]),
+                                              body_point(ball.samples[700])};
+    bake::WalkStageOptions options{
+        .radius = 0.1,
+        .walks = 4 * kSites,
+        .views = 4,
+        .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}};
+    const bake::WalkStage all = bake::take_walks(ball.body->space, light, sites, options, {}, {});
+    options.served = served;
+    const bake::WalkStage some = bake::take_walks(ball.body->space, light, sites, options, {}, {});
+    // Two discs of twice the radius, which rows by view are fitted over, on a ball of radius 1.
+    EXPECT_EQ(all.counts.walks, 4u * sites.size());
+    EXPECT_LT(some.counts.walks, all.counts.walks / 20);
+    EXPECT_GT(some.counts.walks, all.counts.walks / 200);
+    for (const bake::BodyPoint& point : served) {
+        std::array<std::vector<float>, 2> row, views;
+        for (const std::size_t i : {0u, 1u}) {
+            row[i].resize(kAll);
+            views[i].resize(std::size_t{3} * kAll);
+            bake::add_walked_rows(i == 0 ? all : some, point, 1, row[i], views[i]);
+        }
+        EXPECT_EQ(row[0], row[1]);
+        EXPECT_EQ(views[0], views[1]);
     }
 }
 

@@ -197,7 +197,8 @@ std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
 SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> starts,
                          const ExitLight& light, const SiteRowOptions& options,
                          const std::function<void(std::size_t, std::span<float>)>& subtract,
-                         const Context& context, WalkCounts& counts) {
+                         const Context& context, WalkCounts& counts,
+                         std::span<const std::uint8_t> is_read) {
     SiteRows rows;
     rows.bands = options.bands;
     rows.views = options.views;
@@ -212,6 +213,11 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
             Part part;
             SiteWalker walker(space, light, view_fit, options);
             for (std::size_t site = range.begin; site < range.end; ++site) {
+                if (!is_read.empty() && is_read[site] == 0) {
+                    part.block.offset.insert(part.block.offset.end(), options.views,
+                                             part.block.offset.back());
+                    continue;
+                }
                 const std::span<float> own =
                     walker.walk(starts[site], static_cast<std::uint32_t>(site), part.counts);
                 const std::size_t size = own.size() / options.views;

@@ -45,11 +45,13 @@ std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
 /// For each site the mean of its walks' exits, each as the light of a sample nearby: T_0
 /// (README.md, "The estimator"). `subtract(site, row)`, if there is one, subtracts the dipole's
 /// row, four floats per texel (one with one band), before the row is truncated. No walk is stored.
+/// `is_read`: by site, 0 where nobody reads its row, which then stays empty; none: all are read.
 /// The same bits for any number of threads; incomplete if the context is cancelled.
 SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> starts,
                          const ExitLight& light, const SiteRowOptions& options,
                          const std::function<void(std::size_t, std::span<float>)>& subtract,
-                         const Context& context, WalkCounts& counts);
+                         const Context& context, WalkCounts& counts,
+                         std::span<const std::uint8_t> is_read = {});
 
 /// Adds weight * row of a site, weighted band by band, to `rgbx`, four floats per texel (one with
 /// bands = 1). `view` < rows.views.

@@ -51,6 +51,57 @@ void refine_grid(WalkSpace& space) {
     }
 }
 
+// Of sites on the surface.
+void make_fields(const WalkSpace& space, std::span<const SurfaceSample> sites,
+                 const WalkStageOptions& options, WalkStage& stage) {
+    std::vector<float> tints;
+    if (space.media.front().field) {
+        stage.medium = space.media.front().field;
+        stage.depth = static_cast<float>(
+            transport_mean_free_path(*space.scene->materials[space.material].medium));
+        for (const SurfaceSample& s : sites) {
+            tints.push_back(stage.tint(s.position, s.normal));
+        }
+    }
+    stage.field = SiteField(sites, static_cast<float>(options.radius), std::move(tints));
+    if (options.views > 1) {
+        constexpr double kWider = 2;
+        stage.view_field = SiteField(sites, static_cast<float>(kWider * options.radius));
+    }
+}
+
+// Whether points are so many that hardly a site is far from all of them.
+bool covers_all(std::span<const BodyPoint> served, std::span<const SurfaceSample> sites,
+                const WalkStage& stage) {
+    constexpr double kOften = 4;  // that a site is read; e^-4 are not, where points are random
+    double area = 0;
+    for (const SurfaceSample& s : sites) {
+        area += static_cast<double>(s.area);
+    }
+    const auto radius = static_cast<double>(stage.field.radius());
+    return static_cast<double>(served.size()) * std::numbers::pi * radius * radius > kOften * area;
+}
+
+// Sites that add_walked_rows weighs for some of the points.
+std::vector<std::uint8_t> find_read_sites(const WalkStage& stage, std::size_t sites,
+                                          std::span<const BodyPoint> served) {
+    std::vector<std::uint8_t> is_read(sites, 0);
+    std::vector<SiteWeight> weights;
+    const auto mark = [&](const SiteField& field, const BodyPoint& point, float tint) {
+        field.weigh(point.position, point.normal, weights, tint);
+        for (const SiteWeight& w : weights) {
+            is_read[w.site] = 1;
+        }
+    };
+    for (const BodyPoint& point : served) {
+        mark(stage.field, point, stage.tint(point.position, point.normal));
+        if (stage.view_field.size() > 0) {
+            mark(stage.view_field, point, 1);
+        }
+    }
+    return is_read;
+}
+
 }  // namespace
 
 SitePlan plan_sites(double area, double diagonal, double mean_free_path, const WalkBudget& budget) {
@@ -73,6 +124,17 @@ SitePlan plan_sites(double area, double diagonal, double mean_free_path, const W
     plan.radius = std::max(radius, kLeastRadius * std::sqrt(area / count));
     plan.is_residual = plan.radius > 1.5 * carried;
     return plan;
+}
+
+void widen_for_receivers(SitePlan& plan, double area, double diagonal, double receivers) {
+    constexpr double kWidest = 0.1;     // of the diagonal
+    constexpr double kPerReceiver = 2;  // sites
+    constexpr double kPerSquare = 4;    // of the radius: a dozen sites within it
+    if (!plan.is_residual || !(receivers > 0)) return;
+    plan.radius = std::max(plan.radius, std::min(std::sqrt(area / receivers), kWidest * diagonal));
+    const double sites =
+        std::max(kPerReceiver * receivers, kPerSquare * area / (plan.radius * plan.radius));
+    plan.sites = std::min(plan.sites, static_cast<std::uint32_t>(std::ceil(sites)));
 }
 
 double count_walks(const SitePlan& plan, double area, const WalkBudget& budget) {
@@ -114,7 +176,15 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     const double runs = static_cast<double>(sites.size()) * static_cast<double>(space.bands.size());
     rows.walks_per_site =
         static_cast<std::uint32_t>(std::clamp(std::round(options.walks / runs), 1.0, 1e6));
-    stage.rows = walk_from_sites(space, starts, light, rows, subtract, context, stage.counts);
+    std::vector<std::uint8_t> is_read;
+    if (!options.is_inside) {
+        make_fields(space, sites, options, stage);
+        if (!options.served.empty() && !covers_all(options.served, sites, stage)) {
+            is_read = find_read_sites(stage, sites.size(), options.served);
+        }
+    }
+    stage.rows =
+        walk_from_sites(space, starts, light, rows, subtract, context, stage.counts, is_read);
     stage.view_fit = make_view_fit(static_cast<double>(space.eta));
     if (options.is_inside) {
         const formats::Medium& medium = *space.scene->materials[space.material].medium;
@@ -124,21 +194,6 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
                                  formats::mean_cosine(medium.phase) == 0);
         stage.space = space;
         stage.fills_crossed = options.rows.orders.fills_crossed;
-        return stage;
-    }
-    std::vector<float> tints;
-    if (space.media.front().field) {
-        stage.medium = space.media.front().field;
-        stage.depth = static_cast<float>(
-            transport_mean_free_path(*space.scene->materials[space.material].medium));
-        for (const SurfaceSample& s : sites) {
-            tints.push_back(stage.tint(s.position, s.normal));
-        }
-    }
-    stage.field = SiteField(sites, static_cast<float>(options.radius), std::move(tints));
-    if (options.views > 1) {
-        constexpr double kWider = 2;
-        stage.view_field = SiteField(sites, static_cast<float>(kWider * options.radius));
     }
     return stage;
 }

@@ -46,6 +46,11 @@ struct WalkBudget {
 /// budget is too small for as many walks around each receiver, the radius grows.
 SitePlan plan_sites(double area, double diagonal, double mean_free_path, const WalkBudget& budget);
 
+/// Sites of residuals for `receivers` places at which rows are asked for: a radius as wide as these
+/// are apart, up to a tenth of the diagonal [m], blurs no more than what is interpolated between
+/// them, and asks for fewer walks and sites. Others are as planned.
+void widen_for_receivers(SitePlan& plan, double area, double diagonal, double receivers);
+
 /// Walks in all. `area` [m^2] of the body.
 double count_walks(const SitePlan& plan, double area, const WalkBudget& budget);
 
@@ -73,7 +78,10 @@ struct WalkStageOptions {
     double walks = 1e6;       ///< in all; at least one from each site for each group of bands
     bool is_inside = false;   ///< walks begin with a scattering inside, below the sites
     std::uint32_t views = 1;  ///< rows of a receiver: 1, 4 or 9
-    SiteRowOptions rows;      ///< but for the numbers of walks and views
+    /// Where rows are asked for: sites on the surface that no such place reads have none. Empty:
+    /// anywhere.
+    std::span<const BodyPoint> served{};
+    SiteRowOptions rows;  ///< but for the numbers of walks and views
 };
 
 /// Sites on the surface of the space's material, between its samples.
