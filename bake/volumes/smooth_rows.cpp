@@ -51,8 +51,9 @@ std::size_t degree_of_row(std::size_t k) {
     return static_cast<std::size_t>(std::sqrt(static_cast<double>(k)));
 }
 
-// Chances of weights that are tried.
-constexpr std::array<float, 5> kTried{0, 0.125f, 0.25f, 0.5f, 1};
+constexpr std::array<float, 6> kTried{0, 0.0625f, 0.125f, 0.25f, 0.5f, 1};
+
+constexpr float kBetweenNodes = 8.0f / 27;  // of noise
 
 // Sums over a node, its neighbours along edges, across faces and across cells, and how many.
 struct Sums {
@@ -112,7 +113,8 @@ void add_errors(std::span<const WalkedNode> nodes, const NodePairs& pairs, std::
             const float sa = half[0].mean(kTried[t], i), sb = half[1].mean(kTried[t], i);
             const float noise = (sa - sb) * (sa - sb) / 4;
             const float apart = ((sa - b[i]) * (sa - b[i]) + (sb - a[i]) * (sb - a[i])) / 2;
-            of_degree[t].error += density * static_cast<double>(apart - noise);
+            of_degree[t].error +=
+                density * static_cast<double>(apart - (2 - kBetweenNodes) * noise);
             of_degree[t].noise += density * static_cast<double>(noise);
             of_degree[t].light += density * static_cast<double>(sa * sb);
         }

@@ -46,10 +46,12 @@ struct Smoothing {
     double noise = 0;
 };
 
-/// The weights that make rows least wrong, by cross-validation: of two halves a and b of the walks,
-/// smoothed by S, the error of S b + S a is
-///     mean of ((S a - b)^2 + (S b - a)^2) / 2 - (S a - S b)^2 / 4
-/// but for a constant. Nodes count by their density. The same bits for any number of threads.
+/// The weights with which light between nodes is least wrong, by cross-validation. Of two halves a
+/// and b of the walks, smoothed by S, with N = mean of (S a - S b)^2 / 4 the noise of their mean,
+///     bias^2 = mean of ((S a - b)^2 + (S b - a)^2) / 2 - 2 N
+/// but for a constant, and bias^2 + (2/3)^3 N is least: linear interpolation along three axes
+/// leaves 8/27 of what is independent from node to node. Nodes count by their density. The same
+/// bits for any number of threads.
 Smoothing choose_smoothing(std::span<const WalkedNode> nodes, std::span<const NodePairs> pairs,
                            std::span<const float> density, std::uint32_t terms,
                            const Context& context);

@@ -1,6 +1,7 @@
 #include "bake/volumes/walk_nodes.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
