@@ -47,6 +47,11 @@ bool is_there(const std::array<std::uint32_t, 2>& pair) {
     return pair[0] != formats::kNoNode;
 }
 
+bool is_alike(float density, float own) {
+    constexpr float kLeast = 0.75f;
+    return density >= kLeast * own && own >= kLeast * density;
+}
+
 std::size_t degree_of_row(std::size_t k) {
     return static_cast<std::size_t>(std::sqrt(static_cast<double>(k)));
 }
@@ -159,7 +164,7 @@ std::vector<NodePairs> find_node_pairs(const NodeLattice& lattice, std::span<con
                        before = number.find(key_of(own - step));
             if (after == number.end() || before == number.end()) continue;
             const std::array<std::uint32_t, 2> pair{after->second, before->second};
-            if (std::min(density[pair[0]], density[pair[1]]) >= 0.5f * density[i] &&
+            if (is_alike(density[pair[0]], density[i]) && is_alike(density[pair[1]], density[i]) &&
                 is_open(own, own + step) && is_open(own, own - step)) {
                 pairs[i].node[p] = pair;
             }

@@ -24,8 +24,8 @@ struct WalkedNode {
 std::vector<float> reduce_rows(std::span<const float> rows, std::size_t planes, std::uint32_t n);
 
 /// The neighbours of a node along edges, diagonals of faces and of cells, those opposite each other
-/// in pairs. A pair counts where both are there, no surface is between, and both have at least half
-/// of the node's density: light bends where a volume ends.
+/// in pairs. A pair counts where both are there, no surface is between, and densities around both
+/// are the node's own within a quarter: where density changes, light bends.
 struct NodePairs {
     static constexpr std::size_t kCount = 13;
     std::array<std::array<std::uint32_t, 2>, kCount> node{};  ///< formats::kNoNode twice: not there

@@ -102,8 +102,8 @@ TEST(VolumeWalks, AColouredVolumeIsThreeGreyOnesWithTheSameNoise) {
         difference += (grey_row - red_row) * (grey_row - red_row);
         size += grey_row * grey_row;
     }
-    // What is quantised differs, nothing else.
-    EXPECT_LT(std::sqrt(difference / size), 0.02);
+    // What is quantised differs, and how far rows are smoothed, which other bands decide too.
+    EXPECT_LT(std::sqrt(difference / size), 0.03);
 }
 
 // Light of the first row at each node under even light, band after band.
