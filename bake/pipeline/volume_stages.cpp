@@ -29,6 +29,7 @@ struct BakedVolumes {
     VolumePlan plan;
     VolumeParts parts;  // of the plan's layouts
     formats::Volumes volumes;
+    VolumeFindings findings;
     std::optional<VolumeErrorReport> error;  // nothing: they scatter no light
 
     double rms() const { return error ? error->rms_relative : 0; }
@@ -40,16 +41,15 @@ struct BakedVolumes {
 
 formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const Knobs& knobs,
                                              const Context& context, BakeResult& result) {
-    BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}, {}};
+    BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}, {}, {}};
     baked.parts = part_volumes(inputs.scene, baked.plan.layouts, knobs);
-    std::vector<MethodMeasure> measured;
     const formats::AssetView surfaces = result.asset.view();
     const ShownSurfaces shown{inputs.scene, inputs.layouts, inputs.receivers, surfaces};
     auto volumes = bake_volumes(
         {baked.parts.scene_or(inputs.scene), inputs.rays, baked.parts.layouts, knobs, &shown},
-        context, result.stages, &measured);
+        context, result.stages, &baked.findings);
     if (!volumes) return std::move(volumes).error();
-    for (const MethodMeasure& measure : measured) {
+    for (const MethodMeasure& measure : baked.findings.methods) {
         tell_method(measure, method_budget(knobs), baked.plan.entries);
     }
     if (context.cancelled()) return interrupted_volumes();
@@ -87,6 +87,20 @@ formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const 
         if (best->rms() <= result.knobs.error_target) break;
     }
     return std::move(*best);
+}
+
+// Noise from point to point that eyes find at once.
+void warn_of_noise(const formats::Scene& scene, std::span<const RowNoise> noises,
+                   std::vector<formats::Diagnostic>& warnings) {
+    constexpr double kVisible = 0.1;
+    for (const RowNoise& own : noises) {
+        if (own.noise <= kVisible) continue;
+        warnings.push_back(formats::make_warning(
+            "", "volume '" + scene.volumes[own.volume].name + "'",
+            "light that was scattered more than once has noise of " + error_percent(own.noise) +
+                " from point to point: visible as blotches",
+            "give more --volume-walks (four times as many halve it), or a finer --quality"));
+    }
 }
 
 // How far the light of volumes errs, where there is any.
@@ -208,6 +222,7 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
             result.glowing_volumes.push_back(inputs.scene.volumes[layout.volume].emitter);
         }
     }
+    warn_of_noise(inputs.scene, baked->findings.noise, result.warnings);
     const VolumeParts& parts = baked->parts;
     result.asset.volumes = std::move(baked->volumes);
     if (auto status = measure_glow(inputs, baked->check_effort(inputs.scene), context, result);

@@ -64,13 +64,14 @@ DepthTable make_depth_table(std::size_t points, std::size_t cells, std::size_t b
     table.cells = cells;
     table.bands = bands;
     table.code.resize(points * bands * cells);
-    table.is_dark.resize(points);
+    table.most.resize(points * bands);
     return table;
 }
 
 void set_depths(DepthTable& table, std::size_t point, std::size_t band,
                 std::span<const float> attenuation) {
     std::uint16_t* const code = table.code.data() + (point * table.bands + band) * table.cells;
+    table.most[point * table.bands + band] = std::ranges::max(attenuation);
     for (std::size_t i = 0; i < attenuation.size(); ++i) {
         const float depth = attenuation[i] > 0 ? -std::log(attenuation[i]) : DepthTable::kLargest;
         code[i] = static_cast<std::uint16_t>(

@@ -61,7 +61,7 @@ struct DepthTable {
 
     std::size_t cells = 0, bands = 1;
     std::vector<std::uint16_t> code;  ///< point after point, band after band
-    std::vector<bool> is_dark;        ///< points that no light reaches unscattered
+    std::vector<float> most;          ///< largest V of each band of each point, as codes are sorted
 
     const std::uint16_t* codes(std::size_t point, std::size_t band) const {
         return code.data() + (point * bands + band) * cells;
@@ -71,8 +71,7 @@ struct DepthTable {
 /// An empty table of `points` points.
 DepthTable make_depth_table(std::size_t points, std::size_t cells, std::size_t bands);
 
-/// Fills in one band of one point from V. Any thread may set another point's codes; is_dark is not
-/// touched.
+/// Fills in one band of one point from V. Any thread may set another point's codes.
 void set_depths(DepthTable& table, std::size_t point, std::size_t band,
                 std::span<const float> attenuation);
 

@@ -102,6 +102,7 @@ formats::Status pack_density(const formats::SparseGrid<float>& density, const st
 struct Scattered {
     const VolumeWalkSpace& walks;
     const VolumePathSpace& paths;
+    const std::vector<WalkedLayout>& walked;
 };
 
 // The rows T_k of a node.
@@ -116,16 +117,18 @@ std::vector<SparseRow> scatter_node(const VolumeJob& job, const PlacedNodes& nod
     }
     const auto bands = static_cast<std::uint32_t>(nodes.space.bands());
     std::vector<float> dense(terms * bands * nodes.coarse.size());
-    const glm::vec3 position = position_of(job, nodes, layout.volume, place.node);
-    WalkReceiver receiver{layout.volume, number, position, layout.walks, terms};
-    receiver.sees_sky = layout.sees_sky && layout.method != VolumeMethod::path_integration;
-    receiver.sees_surfaces = layout.sees_surfaces;
-    if (receiver.sees_sky || receiver.sees_surfaces) {
+    const WalkReceiver receiver = walk_receiver(job, nodes, number);
+    const WalkedLayout& walked = space.walked[number_of(job, layout)];
+    if (!walked.nodes.empty()) {
+        dense =
+            smooth_rows(walked.nodes, walked.pairs, place.node, walked.smoothing.weights, terms);
+    } else if (receiver.sees_sky || receiver.sees_surfaces) {
         rays += gather_walks(space.walks, receiver, dense);
     }
     if (layout.method == VolumeMethod::path_integration) {
         std::vector<float> paths(dense.size());
-        gather_paths(space.paths, {layout.volume, number, position, layout.views, terms}, paths);
+        gather_paths(space.paths, {layout.volume, number, receiver.position, layout.views, terms},
+                     paths);
         std::ranges::transform(dense, paths, dense.begin(), std::plus<>());
     }
     scale_rows(nodes.albedo[layout.volume][place.node], bands, nodes.coarse.size(), dense);
@@ -135,15 +138,15 @@ std::vector<SparseRow> scatter_node(const VolumeJob& job, const PlacedNodes& nod
 
 // The methods of all layouts, those measured that the plan left open.
 std::vector<VolumeLayout> decide_methods(const VolumeJob& job, const VolumePathSpace& paths,
-                                         std::vector<MethodMeasure>* measured) {
+                                         VolumeFindings* findings) {
     std::vector<VolumeLayout> layouts(job.layouts.begin(), job.layouts.end());
     for (VolumeLayout& layout : layouts) {
         if (layout.method == VolumeMethod::automatic) {
             const MethodMeasure measure = measure_method(
                 paths, job.scene.volumes[layout.volume].density, layout, method_budget(job.knobs));
             layout.method = measure.method;
-            if (measured != nullptr) {
-                measured->push_back(measure);
+            if (findings != nullptr) {
+                findings->methods.push_back(measure);
             }
         }
     }
@@ -182,16 +185,24 @@ void add_to_pools(const VolumeJob& job, const PlacedNodes& nodes, std::size_t nu
 
 formats::Result<formats::SparseRows> gather_node_rows(
     const VolumeJob& given, const PlacedNodes& nodes, LitNodes lit, const SeenSurfaces* seen,
-    const Context& context, std::vector<MethodMeasure>* measured, std::uint64_t& rays) {
+    const Context& context, VolumeFindings* findings, std::uint64_t& rays) {
     const VolumeWalkSpace walks{nodes.space, given.rays,   nodes.lattices,   nodes.first,
                                 lit.depths,  nodes.coarse, given.knobs.seed, seen};
     const PathCells groups = group_cells(nodes.coarse);
     // Paths support one phase function. With several the plan takes walks.
     const VolumePathSpace paths{walks, groups, nodes.space.volumes.front().phase.moments(),
                                 path_lengths(given.knobs.quality)};
-    const std::vector<VolumeLayout> layouts = decide_methods(given, paths, measured);
+    const std::vector<VolumeLayout> layouts = decide_methods(given, paths, findings);
     const VolumeJob job{given.scene, given.rays, layouts, given.knobs, given.surfaces};
-    const Scattered space{walks, paths};
+    const std::vector<WalkedLayout> walked = walk_nodes(job, nodes, walks, context, rays);
+    const Scattered space{walks, paths, walked};
+    for (std::size_t i = 0; findings != nullptr && i < walked.size(); ++i) {
+        if (!walked[i].nodes.empty()) {
+            findings->noise.push_back({layouts[i].whole, walked[i].smoothing.noise});
+        }
+    }
+    const bool smooths = std::ranges::any_of(
+        walked, [](const WalkedLayout& layout) { return !layout.nodes.empty(); });
     formats::SparseRows rows =
         formats::make_sparse_rows(job.knobs.cubemap_size, job.knobs.code_bits);
     bool fits = true;
@@ -219,7 +230,7 @@ formats::Result<formats::SparseRows> gather_node_rows(
                 }
             }
             rays += block.rays;
-            if (context.on_progress) {
+            if (context.on_progress && !smooths) {
                 context.on_progress({scattering_stage(given.layouts), range.end, nodes.count});
             }
         });
@@ -259,8 +270,7 @@ formats::Rgb rgb(const std::array<float, 3>& band) {
 }  // namespace
 
 formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Context& context,
-                                               StageLog& log,
-                                               std::vector<MethodMeasure>* measured) {
+                                               StageLog& log, VolumeFindings* findings) {
     formats::Volumes volumes;
     const PlacedNodes nodes = place_nodes(job);
     const double bytes = 2.0 * static_cast<double>(nodes.count) *
@@ -316,7 +326,7 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
     auto rows = run_stage(
         log, scattering_stage(job.layouts), "volume-multiple: rows", [&](std::uint64_t& rays) {
             return gather_node_rows(job, nodes, std::move(lit), seen ? &*seen : nullptr, context,
-                                    measured, rays);
+                                    findings, rays);
         });
     if (!rows) return std::move(rows).error();
     if (context.cancelled()) {

@@ -156,13 +156,10 @@ LitNodes light_nodes(const VolumeJob& job, const PlacedNodes& nodes, const Conte
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 Lit& own = block.nodes[i - range.begin];
                 const std::size_t cells = nodes.coarse.size();
-                float most = 0;
                 for (std::size_t band = 0; band < lit.depths.bands; ++band) {
-                    const auto values = std::span(own.coarse).subspan(band * cells, cells);
-                    set_depths(lit.depths, i, band, values);
-                    most = std::max(most, *std::ranges::max_element(values));
+                    set_depths(lit.depths, i, band,
+                               std::span(own.coarse).subspan(band * cells, cells));
                 }
-                lit.depths.is_dark[i] = most < 1e-6f;
                 lit.row.push_back(std::move(own.row));
             }
             rays += block.rays;

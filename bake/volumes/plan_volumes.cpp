@@ -59,11 +59,10 @@ std::uint32_t spacing_of(const formats::Volume& volume, const DensityVolume& own
     if (const double given = knobs[kVolumeSpacing]; given > 0) {
         return static_cast<std::uint32_t>(given);
     }
-    const formats::Rgb s = volume.sigma_t;
     const auto quality = static_cast<std::size_t>(knobs.quality);
     std::uint32_t spacing =
-        choose_spacing(volume.density.value, volume.density.to_scene,
-                       static_cast<double>(std::max({s.r, s.g, s.b})), spacing_depth(knobs));
+        choose_spacing(own.grid->value, volume.density.to_scene,
+                       static_cast<double>(std::ranges::max(own.sigma_t)), spacing_depth(knobs));
     // Where albedos differ, they are known at nodes alone.
     constexpr std::array<double, 4> kDetail{0.2, 0.1, 0.05, 0.02};
     while (lost_albedo_detail(own, spacing) > kDetail[quality]) {

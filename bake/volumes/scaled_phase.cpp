@@ -29,14 +29,15 @@ unsigned last_degree(const PhaseSeries& series) {
     return last;
 }
 
+// Empty where p' is negative somewhere.
 std::vector<float> make_cumulative(const ScaledPhase& phase) {
     std::vector<double> sum(kSteps + 1, 0.0);
     for (std::size_t i = 0; i < kSteps; ++i) {
         const double middle = -1 + (static_cast<double>(i) + 0.5) * 2 / kSteps;
-        // A floor, so that every cosine may be drawn: p' crosses 0 within a step.
-        const double p =
-            std::abs(static_cast<double>(eval_scaled(phase, static_cast<float>(middle)))) + 1e-3;
-        sum[i + 1] = sum[i] + p;
+        const auto p = static_cast<double>(eval_scaled(phase, static_cast<float>(middle)));
+        if (p < 0) return {};
+        // A floor, so that every cosine may be drawn: p' may touch 0 within a step.
+        sum[i + 1] = sum[i] + p + 1e-3;
     }
     std::vector<float> cumulative;
     cumulative.reserve(sum.size());
@@ -90,10 +91,25 @@ ScaledPhase scale_phase(const formats::PhaseFunction& phase) {
         }
     }
     scaled.cumulative = make_cumulative(scaled);
+    if (scaled.cumulative.empty()) {
+        // Of p' as if it had one degree more, which the peak takes as far as it is positive.
+        std::array<double, 2 * TurnRule::kMost> lambda{};
+        std::ranges::copy(scaled.lambda, lambda.begin());
+        lambda.back() = std::min(series.lambda[lambda.size() - 1], 0.0);
+        scaled.rule = make_turn_rule(lambda);
+    }
     return scaled;
 }
 
 SampledCosine sample_scaled(const ScaledPhase& phase, float u) {
+    const TurnRule& rule = phase.rule;
+    if (rule.count > 0) {
+        std::size_t i = 0;
+        while (i + 1 < rule.count && u >= rule.below[i]) {
+            ++i;
+        }
+        return {rule.cosine[i], 1};
+    }
     const std::vector<float>& sum = phase.cumulative;
     const auto above = std::upper_bound(sum.begin() + 1, sum.end() - 1, u);
     const auto step = static_cast<std::size_t>(above - sum.begin()) - 1;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/volumes/turn_rule.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -46,7 +47,8 @@ struct ScaledPhase {
     std::array<double, kHighestDegree + 1> lambda{};   ///< its moments lambda'_l, 0 beyond N
     std::array<float, kHighestDegree + 1> monomial{};  ///< p'(c) = sum_i monomial[i] c^i [1/sr];
                                                        ///< may be negative somewhere
-    std::vector<float> cumulative;  ///< of |p'| in even steps of the cosine from -1 to 1; ends at 1
+    TurnRule rule;                  ///< where p' is negative somewhere: how walks turn
+    std::vector<float> cumulative;  ///< elsewhere of p' in even steps of the cosine, up to 1
 
     /// lambda'_0 to lambda'_N.
     std::span<const double> moments() const { return std::span(lambda).first(degree + 1); }
@@ -69,10 +71,10 @@ inline float eval_scaled(const ScaledPhase& phase, float cosine) {
     return value;
 }
 
-/// A cosine between propagation directions, drawn in proportion to |p'|, and p' over its density.
+/// A cosine between propagation directions, drawn by p' or by its rule, and p' over its density.
 struct SampledCosine {
     float cosine = 0;
-    float weight = 1;  ///< its mean is the integral of p' over the sphere, 1
+    float weight = 1;  ///< 1 but for the steps of the table
 };
 
 /// `u` in [0, 1).

@@ -1,10 +1,12 @@
 #include "bake/volumes/volume_parts.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <utility>
 
 #include "bake/volumes/node_lattice.h"
+#include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
 
 namespace opaline::bake {
@@ -78,9 +80,9 @@ std::vector<Part> part_volume(const formats::Volume& volume, const VolumeLayout*
         !volume.emission.empty() || !volume.scattering.empty()) {
         return {};
     }
-    const formats::Rgb s = volume.sigma_t;
-    return part_grid(volume.density, layout->spacing,
-                     static_cast<double>(std::max({s.r, s.g, s.b})), spacing_depth(knobs));
+    const std::array<float, 3> s = scale_medium(volume, scale_phase(volume.phase).peak).sigma_t;
+    return part_grid(volume.density, layout->spacing, static_cast<double>(std::ranges::max(s)),
+                     spacing_depth(knobs));
 }
 
 formats::Volume make_part(const formats::Volume& whole, Grid&& density) {

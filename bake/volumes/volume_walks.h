@@ -38,8 +38,8 @@ struct WalkReceiver {
 /// T_k toward every cell (README.md, "Walks"): in-scattered source radiance of light that was
 /// scattered at least once before, by the volumes or by surfaces [1/sr]. `out`: terms * bands *
 /// cells numbers, term after term and band after band, overwritten; bands as DensitySpace::bands.
-/// Returns the rays traced.
+/// `odd`: the same of every other walk alone; empty: not wanted. Returns the rays traced.
 std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& receiver,
-                           std::span<float> out);
+                           std::span<float> out, std::span<float> odd = {});
 
 }  // namespace opaline::bake

@@ -11,6 +11,7 @@
 #include "bake/volumes/sent_light.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
+#include "bake/volumes/walk_nodes.h"
 #include "bake/volumes/walk_parts.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/phase_table.h"
@@ -259,8 +260,12 @@ double volume_memory(const VolumeWork& work, const Knobs& knobs) {
     constexpr double kScene = 4, kCode = 2, kCorner = 4;
     const double corners = std::pow(8 / work.spacing + 1, 3);
     const double depths = 2 * work.nodes * work.tracks * texels(coarse_cells(knobs));
+    const double walked = takes_walks(work)
+                              ? walked_row_bytes(knobs.quality, work.nodes, work.terms,
+                                                 work.bands * texels(coarse_cells(knobs)))
+                              : 0;
     return work.voxels * (2 * kScene + kGrowth * kCode) + 2 * work.bricks * corners * kCorner +
-           depths +
+           depths + walked +
            kGrowth * node_candidates(knobs.quality) *
                (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
 }

@@ -37,6 +37,13 @@ class FlightRandom {
         return number_[used_++];
     }
 
+    /// Goes on with the numbers that belong to an event of the walk, whatever was drawn before.
+    void begin_event(std::uint32_t event) {
+        constexpr std::uint32_t kMostDraws = 1 << 16;
+        draw_ = event * kMostDraws;
+        used_ = number_.size();
+    }
+
   private:
     std::uint64_t seed_, walk_;
     RandomStage stage_;

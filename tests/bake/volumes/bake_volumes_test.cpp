@@ -61,9 +61,10 @@ TEST(BakeVolumes, AMethodThatThePlanLeavesOpenIsMeasuredAndTold) {
     VolumePlan plan = plan_volumes(scene, knobs);
     plan.layouts.at(0).method = VolumeMethod::automatic;
     StageLog log;
-    std::vector<MethodMeasure> measured;
+    VolumeFindings findings;
     const RayScene sky = tests::empty_space();
-    ASSERT_TRUE(bake_volumes({scene, sky, plan.layouts, knobs}, {}, log, &measured).has_value());
+    ASSERT_TRUE(bake_volumes({scene, sky, plan.layouts, knobs}, {}, log, &findings).has_value());
+    const std::vector<MethodMeasure>& measured = findings.methods;
     ASSERT_EQ(measured.size(), 1u);
     EXPECT_GT(measured[0].path_error, 0);
     EXPECT_EQ(measured[0].method, measured[0].path_error <= method_budget(knobs)

@@ -59,6 +59,26 @@ TEST(ScaledPhase, ADrawnCosineHasTheMomentsOfTheRest) {
     }
 }
 
+// Weights multiply from turn to turn: a mean size of 1.04, that of p' of g = 0.9, is 10 after 60.
+TEST(ScaledPhase, NoWalkWeighsMoreByTurning) {
+    std::vector<formats::PhaseFunction> phases{tests::gaussian(0.11f), tests::gaussian(0.3f)};
+    for (const float g : {-0.9f, 0.0f, 0.5f, 0.85f, 0.9f, 0.95f}) {
+        phases.push_back(tests::hg(static_cast<double>(g)));
+    }
+    for (const formats::PhaseFunction& function : phases) {
+        const ScaledPhase phase = scale_phase(function);
+        constexpr int kDraws = 20000;
+        double size = 0;
+        for (int i = 0; i < kDraws; ++i) {
+            const SampledCosine drawn =
+                sample_scaled(phase, (static_cast<float>(i) + 0.5f) / static_cast<float>(kDraws));
+            ASSERT_GE(drawn.weight, 0) << phase.lambda[1];
+            size += static_cast<double>(drawn.weight) / kDraws;
+        }
+        EXPECT_NEAR(size, 1, 2e-3) << phase.lambda[1];
+    }
+}
+
 // Over the sphere, of p' without its part in the harmonics up to `degree`; by quadrature, without
 // the moments.
 double square_beyond(const ScaledPhase& phase, unsigned degree) {
