@@ -197,6 +197,8 @@ TEST(SeenSurfaces, BesidePathsWalksFindLightOfSurfacesAndNothingElse) {
     const Scene scene = make_smoky_floor({0.8f, 0.8f, 0.8f}, 3, 0.9f);
     const auto light = [&](bake::VolumeMethod method, bool sees_surfaces) {
         bake::BakeOptions options = seen_bake(sees_surfaces);
+        options.quality = bake::Quality::production;  // which averages no rows of neighbours
+        options.set(bake::kVolumeWalks, 192);
         options.set(bake::kVolumeMethod, static_cast<double>(method));
         return double{look(bake_scene(scene, options), {-1.2f, 0, 0}, {1, 0, 0}).radiance.g};
     };
