@@ -212,7 +212,7 @@ TEST(WalkModel, HardCasesGiveFiniteRowsThatAreNoBrighterThanTheSky) {
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         // All media in the ball, two of the hardest in the other bodies.
         for (std::size_t m = b == 0 ? 0 : 1; m < media.size(); m += b == 0 ? 1 : 5) {
-            BakeOptions options = bake_by(kWalked, 300);
+            BakeOptions options = bake_by(kWalked, 1000);
             options.set(kSamples, 200);
             options.set(kSites, 500);
             const BakeResult baked =
