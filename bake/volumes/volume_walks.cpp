@@ -135,11 +135,12 @@ std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& rece
     }
     const ScaledPhase& phase = walk.space.volumes[receiver.volume].phase;
     const float share = receiver.terms == 1 ? 1.0f : 4 * std::numbers::pi_v<float>;
+    const std::uint32_t every_other = receiver.walks / 2;
     for (std::uint32_t k = 0; k < receiver.terms; ++k) {
         const float factor = share * scattered_harmonic(phase, k);
         scale(out.subspan(k * row, row), factor / static_cast<float>(receiver.walks));
         if (!odd.empty()) {
-            scale(odd.subspan(k * row, row), factor / static_cast<float>(receiver.walks / 2));
+            scale(odd.subspan(k * row, row), factor / static_cast<float>(every_other));
         }
     }
     return traced;

@@ -19,8 +19,9 @@ WalkedNode walk_node(const VolumeWalkSpace& walks, const WalkReceiver& receiver,
     rays += gather_walks(walks, receiver, node.rows, odd);
     node.half[1] = reduce_rows(odd, planes, walks.cells.n);
     node.half[0] = reduce_rows(node.rows, planes, walks.cells.n);
+    const std::uint32_t every_other = receiver.walks / 2;
     const auto all = static_cast<float>(receiver.walks),
-               odd_walks = static_cast<float>(receiver.walks / 2);
+               odd_walks = static_cast<float>(every_other);
     for (std::size_t i = 0; i < node.half[0].size(); ++i) {
         float& even = node.half[0][i];
         even = (all * even - odd_walks * node.half[1][i]) / (all - odd_walks);

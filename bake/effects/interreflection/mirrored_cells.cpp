@@ -62,10 +62,11 @@ void MirroredCells::add_parts(const BounceEnd& end, float share) {
     LaneMask lanes{};
     for (std::uint32_t part = 0; part < count; ++part) {
         if (part == taken) continue;
+        const std::uint32_t part_row = part / parts_;
         const auto u = random_uniform(seed_, RandomStage::bounce_rays, key_,
                                       kOfParts + end.cell * count + part);
         const auto across = static_cast<float>(column * parts_ + part % parts_) + u[0];
-        const auto along = static_cast<float>(row * parts_ + part / parts_) + u[1];
+        const auto along = static_cast<float>(row * parts_ + part_row) + u[1];
         set_lane(packet, lanes, part,
                  frame_.to_world(to_hemisphere(across * width, along * width)));
     }
