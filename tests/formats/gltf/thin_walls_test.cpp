@@ -13,16 +13,21 @@ void expect_near(formats::Rgb found, glm::dvec3 expected) {
     EXPECT_NEAR(found.b, expected.z, 1e-6);
 }
 
+// The first material: a surface of two sides and no body, without a warning.
+formats::Material must_be_thin(const AssetBuilder& asset) {
+    const auto imported = must_import(asset);
+    EXPECT_EQ(lines(imported.warnings), "");
+    EXPECT_FALSE(imported.scene.materials[0].medium);
+    return imported.scene.materials[0];
+}
+
 TEST(GltfThinWalls, DiffuseTransmissionIsAThinWalledSurfaceOfTwoSides) {
     AssetBuilder leaf =
         asset_with_extensions({{"KHR_materials_diffuse_transmission",
                                 {{"diffuseTransmissionFactor", 0.25},
                                  {"diffuseTransmissionColorFactor", {0.4, 1, 0.8}}}}});
     leaf.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {0.5, 0.2, 0, 1};
-    const auto imported = must_import(leaf);
-    const formats::Material& material = imported.scene.materials[0];
-    EXPECT_EQ(lines(imported.warnings), "");
-    EXPECT_FALSE(material.medium);
+    const formats::Material material = must_be_thin(leaf);
     ASSERT_TRUE(material.sheet);
     EXPECT_TRUE(material.double_sided);
     // What is reflected and transmitted, whichever of the two is the larger.
@@ -65,10 +70,7 @@ TEST(GltfThinWalls, ScatteringWithoutThicknessIsAThinWalledSurface) {
     extensions["KHR_materials_volume"]["thicknessFactor"] = 0;
     AssetBuilder paper = asset_with_extensions(extensions);
     paper.json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = {1, 0.5, 1, 1};
-    const auto imported = must_import(paper);
-    const formats::Material& material = imported.scene.materials[0];
-    EXPECT_EQ(lines(imported.warnings), "");
-    EXPECT_FALSE(material.medium);
+    const formats::Material material = must_be_thin(paper);
     ASSERT_TRUE(material.sheet);
     expect_near(material.base_color * material.sheet->reflect, {0.25 * 0.8, 0.25 * 0.25, 0});
     expect_near(material.base_color * material.sheet->transmit, {0.75 * 0.8, 0.75 * 0.25, 0});
