@@ -85,7 +85,7 @@ inline constexpr CostBySize kBodyEvent{2.4e-7, 2.8e-7};
 
 /// The reflectance of a half space (even_light.h), all bands.
 inline Work even_light_work() {
-    constexpr double kBand = 1e-2;
+    constexpr double kBand = 2e-3;
     return {0, 3 * kBand};
 }
 
