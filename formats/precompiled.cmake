@@ -1,5 +1,5 @@
 # What makes a build from nothing fast: the headers that most sources include are parsed once, and the sources of a room are
-# compiled ten at a time, so that helpers in anonymous namespaces have names of their own within a room.
+# compiled twenty at a time, so that helpers in anonymous namespaces have names of their own within a room.
 
 # Every library and program defined in DIRECTORY and below it, in the list OUT.
 function(opaline_targets_below directory out)
@@ -15,7 +15,7 @@ endfunction()
 # Compiles the sources of TARGET together, with the precompiled headers of the target FROM, whose flags must be the same.
 function(opaline_build_fast target from)
     if(OPALINE_FAST_BUILD)
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 10)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 20)
         target_precompile_headers(${target} REUSE_FROM ${from})
     endif()
 endfunction()
@@ -30,4 +30,19 @@ function(opaline_precompiled name)
         target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} opaline_warnings)
         target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
     endif()
+endfunction()
+
+# Sources of the static library TARGET that are compiled with OPTIONS: in a library of objects, as a source with options of its
+# own would be left out of its target's unity build.
+function(opaline_compile_with target name options)
+    add_library(${target}_${name} OBJECT ${ARGN})
+    target_include_directories(${target}_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+    target_compile_options(${target}_${name} PRIVATE -ffunction-sections -fdata-sections ${options})
+    target_link_libraries(${target}_${name} PRIVATE opaline_warnings)
+    set_target_properties(${target}_${name} PROPERTIES
+        POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    if(OPALINE_FAST_BUILD)
+        set_target_properties(${target}_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 20)
+    endif()
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${name}>)
 endfunction()

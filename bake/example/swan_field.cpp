@@ -29,7 +29,7 @@ struct Swan {
     std::vector<Feather> flight, coverts, tail;
 };
 
-constexpr double kSink = 0.4;  ///< depth of the flat foot below the floor [mm]
+constexpr double kSwanSink = 0.4;  ///< depth of the flat foot below the floor [mm]
 
 double mix(double a, double b, double t) {
     return a + (b - a) * t;
@@ -227,7 +227,7 @@ double water_distance(const glm::dvec3& p, double body) {
         0.7 * std::cos(body * 0.80) * std::exp(-std::pow(std::max(body, 0.0) / 26.0, 2.0));
     const double rim = ellipsoid({p.x, 0.0, p.z + 2.0}, {41.0, 1e3, 55.0});
     const double top = p.y - 9.5 - ripple;
-    return smooth_intersection(smooth_intersection(rim, top, 9.0), -kSink - p.y, 5.0);
+    return smooth_intersection(smooth_intersection(rim, top, 9.0), -kSwanSink - p.y, 5.0);
 }
 
 double swan_distance(const Swan& swan, const glm::dvec3& p) {

@@ -47,7 +47,7 @@ void gather_sky(const PathSpace& space, Path& path, RandomStream& random, Eval&&
 template <class Eval>
 void gather_lamps(const PathSpace& space, Path& path, glm::vec3 at, RandomStream& random,
                   Eval&& eval) {
-    constexpr float kForever = std::numeric_limits<float>::infinity();
+    constexpr float kNoLimit = std::numeric_limits<float>::infinity();
     const LampSampler& lamps = space.scene.lamps;
     const auto pass = [&](const LightSide& side, LightLine line) {
         line.from = side.from;
@@ -61,7 +61,7 @@ void gather_lamps(const PathSpace& space, Path& path, glm::vec3 at, RandomStream
         if (sided.lobe.pdf > 0) {
             path.radiance +=
                 pass(*sided.side,
-                     {{}, seen->direction, kForever, seen->primitive, seen->triangle, path.key}) *
+                     {{}, seen->direction, kNoLimit, seen->primitive, seen->triangle, path.key}) *
                 seen->radiance * (sided.lobe.response / (seen->pdf + sided.lobe.pdf));
         }
     }

@@ -8,7 +8,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr float kForever = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 using Grid = formats::SparseGrid<float>;
 constexpr int kSide = Grid::kSide;
 
@@ -129,8 +129,8 @@ bool LatticeRay::start(glm::vec3 o, glm::vec3 d, float from, float to, glm::ivec
             std::clamp(static_cast<int>(std::floor(where)), first[a], first[a] + extent[a] - 1);
         step[a] = d[a] > 0 ? 1 : d[a] < 0 ? -1 : 0;
         const auto plane = static_cast<float>(cell[a] + (step[a] > 0 ? 1 : 0));
-        next[a] = step[a] == 0 ? kForever : (plane - o[a]) / d[a];
-        pitch[a] = step[a] == 0 ? kForever : 1 / std::abs(d[a]);
+        next[a] = step[a] == 0 ? kUnbounded : (plane - o[a]) / d[a];
+        pitch[a] = step[a] == 0 ? kUnbounded : 1 / std::abs(d[a]);
     }
     find_end();
     return true;
@@ -221,8 +221,8 @@ std::optional<VolumeSegment> VolumeMarch::next() {
     const std::size_t count = space_.volumes.size();
     for (;;) {
         VolumeSegment segment;
-        segment.begin = kForever;
-        segment.end = kForever;
+        segment.begin = kUnbounded;
+        segment.end = kUnbounded;
         for (std::size_t i = 0; i < count; ++i) {
             if (!cursor_[i].is_done) {
                 segment.begin = std::min(segment.begin, std::max(at_, cursor_[i].begin));

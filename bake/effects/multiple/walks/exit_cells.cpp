@@ -16,7 +16,7 @@ constexpr std::uint32_t kPerFace = ExitCells::kSide * ExitCells::kSide;
 constexpr std::uint32_t kParts = 8;        // of a cell's side
 constexpr std::uint32_t kNormalSide = 33;  // of a cube map of normals that share a table: 3 degrees
 constexpr std::uint32_t kCosines = 1024;
-constexpr std::uint8_t kCoarse = ExitCells::kCount;
+constexpr std::uint8_t kCoarseCell = ExitCells::kCount;
 
 ExitCells::Functions functions_of(const ExitDirection& direction) {
     const glm::vec3 w = direction.mean;
@@ -39,7 +39,7 @@ ExitDirection one_direction(glm::vec3 w) {
 
 // Which cell each Haar function lies in.
 std::vector<std::uint8_t> cells_of_functions(std::uint32_t n) {
-    std::vector<std::uint8_t> cells(formats::cubemap_texels(n), kCoarse);
+    std::vector<std::uint8_t> cells(formats::cubemap_texels(n), kCoarseCell);
     for (std::uint32_t k = 0; k < cells.size(); ++k) {
         const std::uint32_t face = k / (n * n), row = k / n % n, column = k % n;
         // The details of a level with `many` squares along an edge are the part of the 2 many x 2
@@ -197,7 +197,7 @@ ExitCells::Averages ExitCells::averages_of(const SparseVector& vector) const {
     Averages averages{};
     for (std::size_t i = 0; i < vector.index.size(); ++i) {
         const std::uint32_t k = vector.index[i];
-        if (cell_[k] == kCoarse) {
+        if (cell_[k] == kCoarseCell) {
             const std::uint32_t face = k / (size_ * size_);
             averages[(face * kSide + k / size_ % size_) * kSide + k % size_] = vector.value[i];
         }
@@ -221,7 +221,7 @@ void ExitCells::add(std::uint32_t sample, const SparseVector& vector, const Aver
             own[i] = sums[i][static_cast<glm::length_t>(b)];
         }
         weigh_cells(table.reproduces.front().data(), own.data(), plane[b].data());
-        plane[b][kCoarse] = 0;
+        plane[b][kCoarseCell] = 0;
         add_averages(plane[b].data(), averages.data(), cells[b].data());
     }
     float* const to = row.values.data();
