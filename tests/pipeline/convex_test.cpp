@@ -26,11 +26,6 @@ std::uint64_t rays_of(const BakeResult& result, std::string_view stage = "") {
     return rays;
 }
 
-bool has_stage(const BakeResult& result, std::string_view name) {
-    return std::any_of(result.stages.begin(), result.stages.end(),
-                       [&](const StageReport& s) { return s.name == name; });
-}
-
 const PlanEntry& visibility_of(const BakeResult& result) {
     return *find_entry(result.plan, "light.visibility", 0);
 }
@@ -44,7 +39,7 @@ TEST(ConvexBodies, AnOpaqueOnePaysForItsIrradianceAlone) {
     fine.cubemap_size = 32;
     const BakeResult result = bake_convex(make_scene({make_sphere(3, 0.05f)}), false, fine);
     EXPECT_EQ(rays_of(result), 0u);
-    EXPECT_FALSE(has_stage(result, "hierarchy"));
+    EXPECT_FALSE(tests::has_stage(result, "hierarchy"));
     EXPECT_TRUE(result.asset.openness.empty());
     EXPECT_FALSE(visibility_of(result).on);
     for (const formats::Rgb c : tests::relight(result.asset.view(), "white")) {
@@ -139,7 +134,7 @@ TEST(ConvexBodies, EachMaterialIsAskedByItself) {
     const BakeResult result = bake_convex(scene, false);
     EXPECT_FALSE(find_entry(result.plan, "light.visibility", 0)->on);
     EXPECT_TRUE(find_entry(result.plan, "light.visibility", 1)->on);
-    EXPECT_TRUE(has_stage(result, "rows of 'quad'"));
+    EXPECT_TRUE(tests::has_stage(result, "rows of 'quad'"));
     EXPECT_EQ(rays_of(result, "rows of 'quad'"), 0u);
     EXPECT_GT(rays_of(result, "rows of 'sphere'"), 1000u);
 }

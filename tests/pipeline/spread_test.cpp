@@ -30,19 +30,14 @@ const PlanEntry& spread_of(const BakeResult& result) {
     return *find_entry(result.plan, "multiple.spread", 0);
 }
 
-bool has_stage(const BakeResult& result, std::string_view start) {
-    return std::any_of(result.stages.begin(), result.stages.end(),
-                       [&](const StageReport& s) { return s.name.starts_with(start); });
-}
-
 TEST(Spread, OfADenseSmoothBodyIsLeftOutAndSamplesFindTheSame) {
     const auto scene = tests::make_translucent_scene({tests::make_sphere(5)}, clay(5e-5f));
     const BakeResult local = bake_spread(scene, false), spread = bake_spread(scene, true);
     ASSERT_FALSE(spread_of(local).on) << spread_of(local).bound;
     EXPECT_TRUE(spread_of(spread).forced);
-    EXPECT_FALSE(has_stage(local, "samples of "));
-    EXPECT_FALSE(has_stage(local, "light maps of "));
-    EXPECT_TRUE(has_stage(spread, "samples of "));
+    EXPECT_FALSE(tests::has_stage(local, "samples of "));
+    EXPECT_FALSE(tests::has_stage(local, "light maps of "));
+    EXPECT_TRUE(tests::has_stage(spread, "samples of "));
     EXPECT_GT(local.error.receivers_checked, 20u);
     EXPECT_LT(local.error.at_receivers.rms_relative, 0.05) << "suns on a cube map of 8";
     const auto b = tests::relight(spread.asset.view(), "white");

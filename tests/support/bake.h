@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include "bake/environment/builtin_environment.h"
@@ -32,6 +34,12 @@ inline bake::BakeResult bake_scene(const formats::Scene& scene, const bake::Bake
     auto result = bake::run_bake(scene, *knobs, context);
     EXPECT_TRUE(result);
     return std::move(result).value();
+}
+
+/// Whether a stage ran whose name starts so.
+inline bool has_stage(const bake::BakeResult& result, std::string_view start) {
+    return std::any_of(result.stages.begin(), result.stages.end(),
+                       [&](const auto& s) { return s.name.starts_with(start); });
 }
 
 /// A built-in light in the basis of n x n texels a face.

@@ -11,8 +11,8 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kParts = 12;
-using Parts = std::array<double, kParts>;
+constexpr std::size_t kRowParts = 12;
+using Parts = std::array<double, kRowParts>;
 
 // What a point of a wall sends out: waves through space, twelve of them, about `cycles` across the
 // room.
@@ -21,7 +21,7 @@ struct Waves {
 
     Parts at(glm::vec3 x) const {
         Parts parts{};
-        for (std::uint32_t k = 0; k < kParts; ++k) {
+        for (std::uint32_t k = 0; k < kRowParts; ++k) {
             const auto u = random_uniform(3, RandomStage::bounce_rays, k);
             const glm::dvec3 wave{u[0] - 0.5, u[1] - 0.5, u[2] - 0.5};
             parts[k] =
@@ -64,19 +64,19 @@ struct Errors {
 // Against a final gather of very many rays that read what the wave has at their end. The three have
 // the same rays.
 Errors compare(const Room& room, const Waves& waves, std::uint32_t count) {
-    BounceTree tree(room.scatterers, 1, kParts);
+    BounceTree tree(room.scatterers, 1, kRowParts);
     std::vector<float> rows;
     for (const Scatterer& s : room.scatterers) {
         for (const double part : waves.at(s.position)) {
             rows.push_back(static_cast<float>(part));
         }
     }
-    tree.set_rows({rows, kParts});
+    tree.set_rows({rows, kRowParts});
     const auto exact = [&](const Receiver& at, const BounceGrid& grid) {
         Parts sum{};
         trace_bounces(room.rays, at, grid, 1, [&](const BounceHit& hit) {
             const Parts there = waves.at(hit.origin + hit.hits.distance[hit.lane] * hit.direction);
-            for (std::size_t k = 0; k < kParts; ++k) {
+            for (std::size_t k = 0; k < kRowParts; ++k) {
                 sum[k] += there[k] / grid.count();
             }
         });
@@ -90,13 +90,13 @@ Errors compare(const Room& room, const Waves& waves, std::uint32_t count) {
         const auto clustered = [&](LookUp look_up) {
             std::vector<NodeWeight> weights;
             weigh_bounces(room.scene, room.rays, tree, at, grid, 1, weights, look_up);
-            std::vector<float> row(kParts);
+            std::vector<float> row(kRowParts);
             add_node_rows(tree, weights, row);
             return row;
         };
         const std::vector<float> nearest = clustered(LookUp::nearest);
         const std::vector<float> clusters = clustered(LookUp::kernel);
-        for (std::size_t k = 0; k < kParts; ++k) {
+        for (std::size_t k = 0; k < kRowParts; ++k) {
             squares.exact_vectors += std::pow(same_rays[k] - truth[k], 2);
             squares.nearest += std::pow(nearest[k] - truth[k], 2);
             squares.clusters += std::pow(clusters[k] - truth[k], 2);
