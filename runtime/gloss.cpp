@@ -11,7 +11,7 @@ namespace {
 using formats::Rgb;
 using formats::Vec3;
 
-constexpr float kLeastCosine = 1e-3f;
+constexpr float kLeastGlossCosine = 1e-3f;
 
 // The view in the plane of incidence: eye = sine * tangent + cosine * normal.
 struct Frame {
@@ -24,7 +24,7 @@ struct Frame {
 Frame frame_of(const ViewOfReceiver& view) {
     Frame frame;
     frame.normal = view.normal;
-    frame.cosine = std::clamp(view.cosine, kLeastCosine, 1.0f);
+    frame.cosine = std::clamp(view.cosine, kLeastGlossCosine, 1.0f);
     frame.sine = std::sqrt((1 - frame.cosine) * (1 + frame.cosine));
     const Vec3 n = view.normal, flat = view.to_eye - dot(n, view.to_eye) * n;
     const float norm = length(flat);
@@ -213,7 +213,7 @@ Rgb eval_gloss(const GlossLight& light, const Rotation& rotation,
                                   rotation.light_from_world(view.to_eye), view.cosine,
                                   view.is_turned};
     const formats::GlossAlbedo albedo =
-        formats::eval_gloss_albedo(surface, std::clamp(view.cosine, kLeastCosine, 1.0f));
+        formats::eval_gloss_albedo(surface, std::clamp(view.cosine, kLeastGlossCosine, 1.0f));
     const LobeIntegral lobe = integrate_lobe(light, albedo.table, surface.roughness, in_light);
     const Rgb sum =
         fade * albedo.compensation * (surface.f0 * lobe.of_f0 + surface.f90 * lobe.of_f90);
@@ -221,7 +221,7 @@ Rgb eval_gloss(const GlossLight& light, const Rotation& rotation,
 }
 
 float gloss_visibility(const ViewOfReceiver& view, float roughness, Vec3 axis, float open) {
-    const float c = std::clamp(view.cosine, kLeastCosine, 1.0f);
+    const float c = std::clamp(view.cosine, kLeastGlossCosine, 1.0f);
     const Vec3 mirrored = 2 * c * view.normal - view.to_eye;
     const float norm = length(mirrored);
     if (!(norm > 0)) return 0;
@@ -231,7 +231,7 @@ float gloss_visibility(const ViewOfReceiver& view, float roughness, Vec3 axis, f
 }
 
 float gloss_cosine(float cosine) {
-    return std::clamp(std::abs(cosine), kLeastCosine, 1.0f);
+    return std::clamp(std::abs(cosine), kLeastGlossCosine, 1.0f);
 }
 
 }  // namespace opaline::runtime

@@ -13,19 +13,19 @@ using formats::gltf::single_scattering_albedo;
 
 constexpr double kThreeErrors = 0.0105;  ///< of half_space_reflectance
 
-enum class Light { diffuse, normal };
+enum class Incidence { diffuse, normal };
 
 /// Share of light, diffuse or of normal incidence, that an index-matched half space sends back: a
 /// random walk of 20000 paths, whose standard error is below 0.0036 as no path sends back more
 /// than 1.
-double half_space_reflectance(double albedo, double g, Light light) {
+double half_space_reflectance(double albedo, double g, Incidence light) {
     constexpr int kPaths = 20000;
     std::mt19937 generator(7);
     std::uniform_real_distribution<double> uniform(0, 1);
     double reflected = 0;
     for (int path = 0; path < kPaths; ++path) {
         double depth = 0, weight = 1;
-        double mu = light == Light::diffuse ? std::sqrt(uniform(generator)) : 1;
+        double mu = light == Incidence::diffuse ? std::sqrt(uniform(generator)) : 1;
         for (;;) {
             depth -= mu * std::log1p(-uniform(generator));
             if (depth < 0) {
@@ -67,7 +67,7 @@ TEST(AlbedoInversion, ReturnsTheColourOfTheForwardFit) {
 
 TEST(AlbedoInversion, ThickMediumReflectsItsColourOfDiffuseLightWhateverTheAnisotropy) {
     for (const double g : {0.0, 0.5, 0.8}) {
-        EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, g), g, Light::diffuse),
+        EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, g), g, Incidence::diffuse),
                     0.8, kThreeErrors)
             << g;
     }
@@ -75,12 +75,12 @@ TEST(AlbedoInversion, ThickMediumReflectsItsColourOfDiffuseLightWhateverTheAniso
 
 TEST(AlbedoInversion, LeavingOutTheAnisotropyDarkensAForwardScatteringMedium) {
     // At normal incidence 0.759 at g = 0, and 0.531 where the albedo of g = 0 meets g = 0.8.
-    EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, 0), 0, Light::normal), 0.759,
-                kThreeErrors);
-    EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, 0), 0.8, Light::normal), 0.531,
-                kThreeErrors);
+    EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, 0), 0, Incidence::normal),
+                0.759, kThreeErrors);
+    EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, 0), 0.8, Incidence::normal),
+                0.531, kThreeErrors);
     // Similarity holds for diffuse light; at one angle it is a little off, at most 0.01 here.
-    EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, 0.8), 0.8, Light::normal),
+    EXPECT_NEAR(half_space_reflectance(single_scattering_albedo(0.8, 0.8), 0.8, Incidence::normal),
                 0.759, 0.01 + kThreeErrors);
 }
 

@@ -13,7 +13,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr float kLeastRadius = 1.5f;
+constexpr float kLeastBankRadius = 1.5f;
 constexpr double kStepsPerOctave = 3;
 
 // Starts of walks that belong to no site: a bank has 256 radii at most.
@@ -22,7 +22,8 @@ constexpr std::uint32_t kFirstStart = 0xffff0000u;
 }  // namespace
 
 BallJump BallBank::draw(float clearance, glm::vec3 direction, float u, float v) const {
-    const float place = static_cast<float>(kStepsPerOctave) * std::log2(clearance / kLeastRadius);
+    const float place =
+        static_cast<float>(kStepsPerOctave) * std::log2(clearance / kLeastBankRadius);
     auto k = std::min(static_cast<std::size_t>(std::max(0.0f, place)), radius_.size() - 1);
     if (k > 0 && radius_[k] > clearance) {
         --k;  // rounding
@@ -83,7 +84,7 @@ BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
     double events = 0, of_next = 2.0 * BallBank::kRecords;
     for (std::uint32_t k = 0; k < 256 && !context.cancelled(); ++k) {
         const auto radius =
-            static_cast<float>(double{kLeastRadius} * std::exp2(k / kStepsPerOctave));
+            static_cast<float>(double{kLeastBankRadius} * std::exp2(k / kStepsPerOctave));
         if (double{radius} > options.largest || events + of_next > options.events) {
             break;
         }

@@ -26,7 +26,7 @@ std::vector<SurfacePoint> start_points(std::span<const WalkStart> starts) {
 }
 
 constexpr std::size_t kFewest = 12;  // sites of a fit
-constexpr float kCell = 1.12f;       // of the grid, in radii: sqrt(1 + .5^2)
+constexpr float kGridCell = 1.12f;   // of the grid, in radii: sqrt(1 + .5^2)
 
 // How deep flights go [m]: light from behind that an absorbing body dims hardly less than a flight
 // comes from everywhere along it.
@@ -66,7 +66,7 @@ InnerField::InnerField(std::span<const WalkStart> starts, float radius, float pa
     : radius_(radius),
       path_(path),
       is_isotropic_(is_isotropic),
-      grid_(start_points(starts), kCell * radius) {
+      grid_(start_points(starts), kGridCell * radius) {
     for (const WalkStart& s : starts) {
         position_.push_back(s.position);
         arrival_.push_back(s.arrival);
