@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <sys/resource.h>
+#include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -248,7 +249,13 @@ formats::Status check_threads(unsigned threads) {
     for (std::thread& thread : started) {
         thread.join();
     }
-    if (fault.empty()) return formats::ok_status();
+    if (fault.empty()) {
+        // TBB warns on the standard error, at every stage, of more threads than cores.
+        static std::optional<tbb::global_control> allowed;
+        allowed.emplace(tbb::global_control::max_allowed_parallelism,
+                        std::max(count, std::thread::hardware_concurrency()));
+        return formats::ok_status();
+    }
     return make_error(ErrorKind::resource, "", "--threads",
                       fmt::format("{} threads cannot be started: {}", count, fault),
                       "lower --threads, or raise the limits of memory and of processes");
