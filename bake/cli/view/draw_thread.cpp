@@ -42,7 +42,7 @@ formats::Status keep_open(OpenFile& file, const std::string& path, std::uint64_t
 }
 
 // A picture's size is divided by `divisor`.
-struct Quality {
+struct PassQuality {
     std::uint32_t divisor = 1, supersampling = kFinalSamples;
 
     double samples(const ViewState& state) const {
@@ -50,13 +50,13 @@ struct Quality {
         return pixels * supersampling * supersampling / (divisor * divisor);
     }
 };
-constexpr std::array<Quality, 4> kQualities{{{4, 1}, {2, 1}, {1, 1}, {1, kFinalSamples}}};
+constexpr std::array<PassQuality, 4> kPassQualities{{{4, 1}, {2, 1}, {1, 1}, {1, kFinalSamples}}};
 
 // The best that takes kQuick; the coarsest before any picture was timed.
 std::size_t quick_quality(const ViewState& state, double seconds_per_sample) {
     std::size_t best = 0;
-    while (best + 1 < kQualities.size() &&
-           kQualities[best + 1].samples(state) * seconds_per_sample <= kQuick) {
+    while (best + 1 < kPassQualities.size() &&
+           kPassQualities[best + 1].samples(state) * seconds_per_sample <= kQuick) {
         ++best;
     }
     return best;
@@ -64,8 +64,8 @@ std::size_t quick_quality(const ViewState& state, double seconds_per_sample) {
 
 // The one after another; the last where that takes kSoon.
 std::size_t next_quality(std::size_t quality, const ViewState& state, double seconds_per_sample) {
-    const bool is_soon = kQualities.back().samples(state) * seconds_per_sample <= kSoon;
-    return is_soon ? kQualities.size() - 1 : quality + 1;
+    const bool is_soon = kPassQualities.back().samples(state) * seconds_per_sample <= kSoon;
+    return is_soon ? kPassQualities.size() - 1 : quality + 1;
 }
 
 struct DrawWork {
@@ -76,7 +76,7 @@ struct DrawWork {
     double seconds_per_sample = HUGE_VAL;  // of the last picture
 
     formats::Status open_all(const DrawRequest& request);
-    formats::Result<DrawnView> draw(const DrawRequest& request, const Quality& quality,
+    formats::Result<DrawnView> draw(const DrawRequest& request, const PassQuality& quality,
                                     const std::atomic<bool>& stop);
     formats::Result<DrawnSide> draw_side(OpenFile& from, const DrawRequest& request,
                                          const runtime::Camera& camera, std::uint32_t samples,
@@ -123,7 +123,7 @@ formats::Result<DrawnSide> DrawWork::draw_side(OpenFile& from, const DrawRequest
     return side;
 }
 
-formats::Result<DrawnView> DrawWork::draw(const DrawRequest& request, const Quality& quality,
+formats::Result<DrawnView> DrawWork::draw(const DrawRequest& request, const PassQuality& quality,
                                           const std::atomic<bool>& stop) {
     if (auto status = open_all(request); !status) return status.error();
     const ViewState& state = request.state;
@@ -193,7 +193,7 @@ void DrawThread::run() {
     const auto draw = [&](const DrawRequest& request, std::size_t quality) {
         auto drawn = std::make_shared<DrawnView>();
         try {
-            auto view = work.draw(request, kQualities[quality], stop_);
+            auto view = work.draw(request, kPassQualities[quality], stop_);
             if (view) {
                 *drawn = std::move(*view);
             } else {
