@@ -18,6 +18,15 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+TEST(Bake, ManyMoreThreadsThanCoresPrintNothing) {
+    SmallScene small;
+    const auto threads = std::to_string(3 * std::thread::hardware_concurrency());
+    const Outcome bake = start_opaline({"bake", small.scene(), "-o", small.path("a.opal"),
+                                        "--quality", "draft", "--quiet", "--threads", threads});
+    EXPECT_EQ(bake.exit_code, 0);
+    EXPECT_EQ(bake.err, "") << "TBB warns of threads that it does not start";
+}
+
 TEST(Bake, ReportHasTheKeysOfTheContract) {
     SmallScene small;
     const Outcome bake =
