@@ -28,7 +28,6 @@ constexpr Entry kEntries[] = {
     {"interreflection-table", interreflection_table},
     {"model-table", model_table},
     {"radiosity-figure", radiosity_figure},
-    {"radiosity-table", radiosity_table},
     {"slab-accuracy", slab_accuracy},
     {"texture-filter", texture_filter},
     {"volume-relight", volume_relight},

@@ -8,7 +8,6 @@ int error_matrix(int count, char** arguments);
 int interreflection_table(int count, char** arguments);
 int model_table(int count, char** arguments);
 int radiosity_figure(int count, char** arguments);
-int radiosity_table(int count, char** arguments);
 int slab_accuracy(int count, char** arguments);
 int texture_filter(int count, char** arguments);
 int volume_relight(int count, char** arguments);

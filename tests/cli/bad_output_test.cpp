@@ -24,17 +24,6 @@ TEST(BadOutput, MissingFolderIsNamedBeforeAnyWork) {
     }
 }
 
-TEST(BadOutput, UnwritableFolderIsNamed) {
-    if (::geteuid() == 0) GTEST_SKIP() << "root may write anywhere";
-    SmallScene small;
-    const TemporaryFolder locked;
-    std::filesystem::permissions(locked.path(), std::filesystem::perms::owner_read);
-    const Outcome bake = run_opaline({"bake", small.scene(), "-o", locked / "out.opal"});
-    std::filesystem::permissions(locked.path(), std::filesystem::perms::owner_all);
-    EXPECT_EQ(bake.exit_code, 4) << bake.err;
-    EXPECT_THAT(bake.err, HasSubstr("out.opal"));
-}
-
 TEST(BadOutput, PathThroughAFileIsNamed) {
     SmallScene small;
     expect_refused({"bake", small.scene(), "-o", small.scene() + "/out.opal"}, 4, "out.opal");
@@ -98,25 +87,6 @@ TEST(BadOutput, PastTheLimitOfFileSizesLeavesTheFormerFileAndNothingElse) {
     EXPECT_THAT(outcome.err, StartsWith("opaline: error: " + out));
     EXPECT_THAT(outcome.err, HasSubstr("File too large (raise the limit of file sizes"));
     EXPECT_EQ(read_text(out), "former");
-}
-
-TEST(BadOutput, PictureOnAFullDiskLeavesNothing) {
-    SmallScene small;
-    const std::string file = small.baked();
-    const TemporaryFolder disk;
-    if (run_on_small_disk(disk.path(), "true").exit_code != 0) {
-        GTEST_SKIP() << "no right to mount a small disk here";
-    }
-    for (const std::string name : {"a.exr", "a.png"}) {
-        const Outcome outcome = run_on_small_disk(
-            disk.path(),
-            "dd if=/dev/zero of=\"$1\"/ballast bs=1k count=60 2>/dev/null; " OPALINE_PROGRAM
-            " render '" +
-                file + "' --light studio --backend cpu -o '" + (disk / name).string() +
-                "'; code=$?; ls -A \"$1\"; exit $code");
-        EXPECT_EQ(outcome.exit_code, 4) << outcome.err;
-        EXPECT_EQ(outcome.out, "ballast\n");
-    }
 }
 
 }  // namespace

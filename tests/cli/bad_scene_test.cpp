@@ -77,23 +77,5 @@ TEST_F(BadScene, FlippedBitsNeverCrashABake) {
     EXPECT_GT(refused, 0);
 }
 
-TEST_F(BadScene, MeshOfZeroAreaTrianglesIsRefused) {
-    AssetBuilder asset;
-    const auto position = asset.add<float>({0, 0, 0, 1, 0, 0, 2, 0, 0}, "VEC3");
-    asset.add_node(asset.add_mesh({{"POSITION", position}}));
-    EXPECT_THAT(refuse_asset(asset), HasSubstr("area"));
-}
-
-TEST_F(BadScene, SingleZeroAreaTriangleIsAWarning) {
-    AssetBuilder asset = two_squares();
-    const auto index = asset.add<std::uint16_t>({0, 1, 2, 0, 2, 3, 1, 1, 2}, "SCALAR");
-    asset.json["meshes"][0]["primitives"][0]["indices"] = index;
-    write_file(folder_ / "scene.glb", asset.glb());
-    const Outcome bake =
-        run_well({"bake", folder_ / "scene.glb", "-o", folder_ / "out.opal", "--quality", "draft"});
-    EXPECT_THAT(bake.err, HasSubstr("1 of 3 triangles have no area"));
-    run_well({"verify", folder_ / "out.opal"});
-}
-
 }  // namespace
 }  // namespace opaline::tests

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <csignal>
-#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -280,21 +279,25 @@ TEST(Bake, ProgressIsJsonLinesOnRequestAndSilentOffATerminal) {
     EXPECT_EQ(std::count(silent.err.begin(), silent.err.end(), '\n'), 1);
 }
 
-TEST(Bake, InterruptedBakeLeavesNothing) {
+TEST(Bake, InterruptedOrKilledBakeLeavesNothing) {
     const TemporaryFolder folder;
     write_file(folder / "sheet.glb", wavy_sheet(200).glb());
-    for (const int signal : {SIGINT, SIGTERM}) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
+        const bool is_killed = signal == SIGKILL;
+        if (is_killed && !has_unnamed_files()) {
+            GTEST_SKIP() << "the file system has no O_TMPFILE";
+        }
         const Outcome bake =
             start_opaline({"bake", folder / "sheet.glb", "-o", folder / "out.opal", "--report",
-                           folder / "r.json", "--quality", "reference"},
+                           folder / "r.json", "--depfile", folder / "d", "--quality", "reference"},
                           [&](int process) {
                               // Its files have no names before it ends: some time after its start.
                               std::this_thread::sleep_for(std::chrono::milliseconds(1500));
                               ::kill(process, signal);
                           });
-        EXPECT_EQ(bake.exit_code, 130) << bake.err;
-        EXPECT_THAT(bake.err, HasSubstr("interrupted"));
-        EXPECT_EQ(list_folder(folder.path()), Arguments{"sheet.glb"});
+        EXPECT_EQ(bake.exit_code, is_killed ? 128 + SIGKILL : 130) << signal << bake.err;
+        EXPECT_THAT(bake.err, HasSubstr(is_killed ? "" : "interrupted")) << signal;
+        EXPECT_EQ(list_folder(folder.path()), Arguments{"sheet.glb"}) << signal;
     }
 }
 

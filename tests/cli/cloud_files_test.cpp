@@ -64,21 +64,5 @@ TEST(CloudFiles, VerifyAcceptsSoundOnesAndNamesFaults) {
                    "section CLOU, layer 0: band 2: a value of its tables of radiance");
 }
 
-TEST(CloudFiles, EveryCommandThatReadsOneEndsWellWithoutAnyVertex) {
-    SmallScene small;
-    const std::string file = small.write(make_cloud_asset(), "clouds.opal");
-    run_well({"relight", file, "--light", "studio", "-o", small.path("o.csv")});
-    EXPECT_THAT(read_text(small.path("o.csv")), HasSubstr("primitive,vertex,r,g,b"));
-    for (const char* output : {"o.ply", "o.exr", "o.png"}) {
-        const Outcome other =
-            run_opaline({"relight", file, "--light", "white", "-o", small.path(output)});
-        EXPECT_LE(other.exit_code, 2) << other.err;
-    }
-    const Outcome picture =
-        run_opaline({"render", file, "--light", "studio", "--backend", "cpu", "--size", "16x12",
-                     "--eye", "0,900,0", "--target", "0,1000,500", "-o", small.path("p.exr")});
-    EXPECT_LE(picture.exit_code, 2) << picture.err;
-}
-
 }  // namespace
 }  // namespace opaline::tests

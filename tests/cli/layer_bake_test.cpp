@@ -50,21 +50,5 @@ TEST(LayerBake, IsPlannedBakedAndStatedFromAMediaFileAlone) {
     run_well({"verify", file});
 }
 
-TEST(LayerBake, BlackGroundSendsNothingBackAndAVeilIsNoCloud) {
-    SmallScene small;
-    EXPECT_EQ(plan_of(write_layer_scene(small, R"("thickness": 300, "ground_albedo": [0, 0, 0])"),
-                      "radiosity")["decision"],
-              "off");
-    EXPECT_EQ(plan_of(write_layer_scene(small, R"("thickness": 1e-4)"), "cloud")["decision"],
-              "off");
-}
-
-TEST(LayerBake, TwoLayersAreOneTooMany) {
-    SmallScene small;
-    const std::string scene = small.path("two.json");
-    write_file(scene, std::string(R"({"clouds": [{"thickness": 100}, {"thickness": 50}]})"));
-    expect_refused({"plan", scene}, 3, "this version simulates one");
-}
-
 }  // namespace
 }  // namespace opaline::tests

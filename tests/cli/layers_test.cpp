@@ -48,15 +48,6 @@ TEST(LayerFiles, RenderShowsThemFromBelowAndFromAboveAndMovedByTheirWind) {
     }
 }
 
-TEST(LayerFiles, TurntablesAndTimingsAreThoseOfOtherFiles) {
-    SmallScene small;
-    const std::string file = small.write(make_cloud_asset(), "layer.opal");
-    const Outcome outcome = run_well({"render", file, "--light", "sun:30,40", "--frames", "2",
-                                      "--size", "16x12", "--stats", "-o", small.path("t.png")});
-    EXPECT_THAT(outcome.out, AllOf(HasSubstr("layer light"), HasSubstr("draw per frame")));
-    EXPECT_NE(read_text(small.path("t-0001.png")), read_text(small.path("t-0002.png")));
-}
-
 // The film stands still but for the clouds: each frame is what --time shows.
 TEST(LayerFiles, FilmsShowTheLayerAtTheTimeOfEachFrame) {
     SmallScene small;

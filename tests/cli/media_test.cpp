@@ -108,10 +108,6 @@ TEST_F(MediaOption, AllowPathReadsFilesOfAnotherFolder) {
               1u);
 }
 
-TEST_F(MediaOption, MissingFileIsNamed) {
-    refuse(small_.path("nowhere.json"));
-}
-
 TEST_F(MediaOption, FaultyFilesAreRefusedWithTheElement) {
     EXPECT_THAT(
         refuse(media({{"Brick", {{"preset", "marble"}, {"colour", 1}}}})),

@@ -120,15 +120,6 @@ TEST(Messages, AnExampleWithoutAFolderGetsOneOfItsName) {
     EXPECT_EQ(list_folder(folder.path()), (Arguments{"black.exr", "glossy"}));
 }
 
-TEST(Messages, SizesOutOfRangeAreSaidToBe) {
-    SmallScene small;
-    expect_refused({"render", small.baked(), "--light", "white", "-o", small.path("a.png"),
-                    "--size", "100000x100000"},
-                   2,
-                   "--size: '100000x100000' is not WIDTHxHEIGHT in pixels, "
-                   "each from 1 to 16384");
-}
-
 TEST(Messages, SeedsOfSixtyFourBitsAreTaken) {
     SmallScene small;
     run_well({"plan", small.scene(), "--seed", "18446744073709551615"});
@@ -190,16 +181,6 @@ TEST(Messages, NothingFromTheCommandLineReachesTheTerminalRaw) {
     }
 }
 
-TEST(Messages, HeaderLinesOfAnHdrFileAreShownWithoutTheirEscapes) {
-    SmallScene small;
-    write_file(small.path("a.hdr"),
-               "#?RADIANCE\nFORMAT=" + kHostile + "\n\n-Y 4 +X 8\n" + std::string(128, '\x01'));
-    const Outcome outcome = run_opaline(
-        {"relight", small.baked(), "--light", small.path("a.hdr"), "-o", small.path("a.csv")});
-    EXPECT_EQ(outcome.exit_code, 3);
-    expect_harmless(outcome.err, "relight");
-}
-
 TEST(Messages, PlainLettersOfEveryScriptStayReadable) {
     SmallScene small;
     const std::string name = "K\xc3\xb6nig \xe7\x8e\x8b";
@@ -237,14 +218,6 @@ TEST(Messages, StrictMakesWarningsErrorsAndWritesNothing) {
     quiet.insert(quiet.begin(), "--quiet");  // before the command as well as after it
     const Outcome silent = run_well(quiet);
     EXPECT_EQ(silent.err, "");
-}
-
-TEST(Messages, VerboseTellsPlanAndStages) {
-    SmallScene small;
-    const Outcome bake = run_well(
-        {"bake", small.scene(), "-o", small.path("a.opal"), "--quality", "draft", "--verbose"});
-    EXPECT_THAT(bake.err, HasSubstr("\nhierarchy "));
-    EXPECT_THAT(bake.err, HasSubstr("direct on for material 'Brick': "));
 }
 
 TEST(Json, VerifyTellsOfEveryFile) {

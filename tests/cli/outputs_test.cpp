@@ -1,14 +1,10 @@
 #include <gmock/gmock.h>
 
-#include <csignal>
-#include <thread>
-
 #include "tests/cli/small_scene.h"
 
 namespace opaline::tests {
 namespace {
 
-using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
 Arguments draft(const SmallScene& small, const Arguments& more) {
@@ -100,30 +96,6 @@ TEST(Outputs, EndingsMayBeInCapitals) {
     EXPECT_THAT(read_text(png), StartsWith("\x89PNG"));
     run_well({"relight", small.baked(), "--light", "white", "-o", csv});
     EXPECT_THAT(read_text(csv), StartsWith("primitive,vertex,"));
-}
-
-/// Bakes for a while and gets a signal; what the folder holds afterwards.
-Arguments folder_after(int signal, int expected_code) {
-    SmallScene small;
-    write_file(small.path("sheet.glb"), wavy_sheet(400).glb());
-    const Outcome bake = start_opaline(
-        {"bake", small.path("sheet.glb"), "-o", small.path("a.opal"), "--report",
-         small.path("r.json"), "--depfile", small.path("d"), "--quality", "reference"},
-        [=](int process) {
-            std::this_thread::sleep_for(std::chrono::milliseconds(1500));
-            ::kill(process, signal);
-        });
-    EXPECT_EQ(bake.exit_code, expected_code) << bake.err;
-    return list_folder(small.folder());
-}
-
-TEST(Outputs, LostTerminalEndsTheBakeInGoodOrder) {
-    EXPECT_EQ(folder_after(SIGHUP, 130), (Arguments{"scene.glb", "sheet.glb"}));
-}
-
-TEST(Outputs, KilledBakeLeavesNothing) {
-    if (!has_unnamed_files()) GTEST_SKIP() << "the file system has no O_TMPFILE";
-    EXPECT_EQ(folder_after(SIGKILL, 128 + SIGKILL), (Arguments{"scene.glb", "sheet.glb"}));
 }
 
 TEST(Outputs, SignalsIgnoredAsByNohupStayIgnored) {

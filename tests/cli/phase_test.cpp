@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -8,7 +7,6 @@
 #include "tests/cli/print_json.h"
 #include "tests/cli/run_program.h"
 #include "tests/formats/gltf/asset_builder.h"
-#include "tests/support/reference_table.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::tests {
@@ -35,28 +33,6 @@ double integral(const Json& function) {
     return 2 * pi * sum;
 }
 
-TEST(Phase, PrintsTheErrorsOfTheReferenceTable) {
-    for (const auto& [check, key] : {std::pair{"hg_rms_rel", "harmonics"},
-                                     {"hg_rms_abs", "harmonics_absolute"},
-                                     {"hg_svd_cube16_rms_rel", "svd"}}) {
-        OPALINE_REFERENCE_ROWS(rows, "translucency.csv", check);
-        std::map<std::string, Json> printed;
-        for (const auto& row : rows) {
-            const std::string& g = row.input.at("g");
-            if (row.number("K") > 25) {
-                continue;  // the program stops there
-            }
-            if (!printed.contains(g)) {
-                printed[g] = phase({"--g", g});
-            }
-            const auto terms = static_cast<std::size_t>(row.number("K"));
-            EXPECT_NEAR(printed[g].at("rms").at(key).at(terms - 1).get<double>(), row.expected,
-                        row.tolerance())
-                << row.name();
-        }
-    }
-}
-
 TEST(Phase, EveryTypeIsADensityWithItsMeanCosine) {
     const TemporaryFolder folder;
     write_file(folder / "ramp.csv", std::string("cosine,value\n-1,0\n1,4\n"));
@@ -77,22 +53,6 @@ TEST(Phase, EveryTypeIsADensityWithItsMeanCosine) {
     const Json narrow = phase({"--type", "gaussian", "--rms-angle", "0.5"});
     EXPECT_NEAR(integral(narrow.at("function")), 1, 1e-3);
     EXPECT_GT(narrow.at("mean_cosine"), 0.8);
-}
-
-TEST(Phase, PrintedFunctionIsATableThatGivesItselfBack) {
-    const TemporaryFolder folder;
-    const Json first = phase({"--g", "0.5", "--samples", "721"});
-    std::ostringstream table;
-    for (std::size_t i = 0; i < 721; ++i) {
-        table << first.at("function").at("cosine").at(i).dump() << ' '
-              << first.at("function").at("value").at(i).dump() << '\n';
-    }
-    write_file(folder / "hg.txt", table.str());
-    const Json second = phase({"--type", "table", "--table", folder / "hg.txt"});
-    for (std::size_t l = 0; l < 8; ++l) {
-        // Linear between rows a quarter of a degree apart.
-        EXPECT_NEAR(second.at("lambda").at(l).get<double>(), std::pow(0.5, l), 1e-4) << l;
-    }
 }
 
 // With equally spaced rows g = 0.99 came back as 0.993, which the reader refuses.

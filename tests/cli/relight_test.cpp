@@ -172,68 +172,6 @@ TEST(Terms, MergedFilesSayWhatToDoForOneOfTheirTerms) {
     }
 }
 
-// Tables hold nine digits, and the random rows of the translucent triangle may be negative: only
-// components that nothing was clamped from are compared, which the whole tells by being their sum.
-TEST(Terms, TablesOfAllComponentsAddUpToTheWhole) {
-    SmallScene small;
-    const std::string file = write_glossy(small, true);
-    const auto table = [&](const std::string& terms) {
-        const std::string out = small.path("t-" + terms + ".csv");
-        Arguments arguments{"relight", file, "--light", "sky:3,40", "--eye", "1,1,3", "-o", out};
-        if (!terms.empty()) arguments.insert(arguments.end(), {"--terms", terms});
-        run_well(arguments);
-        std::vector<std::array<double, 3>> values;
-        for (const std::string& line : lines_of(read_text(out))) {
-            std::array<double, 3> v{};
-            if (std::sscanf(line.c_str(), "%*u,%*u,%lf,%lf,%lf", &v[0], &v[1], &v[2]) == 3) {
-                values.push_back(v);
-            }
-        }
-        return values;
-    };
-    const auto whole = table(""), all = table("diffuse,specular,single,multiple"),
-               opaque = table("diffuse"), mirrored = table("specular"),
-               inside = table("multiple,single");
-    ASSERT_EQ(whole.size(), 11u);
-    EXPECT_EQ(whole, all);
-    for (std::size_t i = 0; i < whole.size(); ++i) {
-        for (std::size_t c = 0; c < 3; ++c) {
-            EXPECT_NEAR(whole[i][c], opaque[i][c] + mirrored[i][c] + inside[i][c],
-                        1e-6 * (1 + whole[i][c]));
-            EXPECT_EQ(i<8, opaque[i][c]> 0 || whole[i][c] == 0) << i;
-        }
-    }
-    EXPECT_GT(mirrored.back()[2], 0);
-    EXPECT_EQ(mirrored.front()[2], 0);
-}
-
-TEST(Terms, BackendsAgreeOnComponentsOverBlack) {
-    SmallScene small;
-    const std::string file = write_glossy(small, true);
-    for (const char* terms : {"multiple", "specular", "diffuse", "single,specular"}) {
-        const formats::Image image = draw_on_both(
-            small, file,
-            {"--light", "studio", "--size", "83x57", "--eye", "2,1,3", "--terms", terms});
-        EXPECT_EQ(image.pixel.front(), formats::Rgb{});
-    }
-}
-
-TEST(Info, SaysWhatIsGlossyAndSeparate) {
-    SmallScene small;
-    const std::string file = write_glossy(small, true);
-    run_well({"verify", file});
-    const Outcome info = run_opaline({"info", file});
-    EXPECT_THAT(info.out, HasSubstr("multiple and single separate, roughness 0.3"));
-    EXPECT_THAT(info.out, HasSubstr("SPEC"));
-    EXPECT_THAT(run_opaline({"info", file, "--json"}).out, HasSubstr("\"separate\": true"));
-}
-
-TEST(Render, BackendsAgreeOnTranslucentPrimitives) {
-    SmallScene small;
-    draw_on_both(small, write_translucent(small),
-                 {"--light", "studio", "--size", "83x57", "--eye", "2,1,3"});
-}
-
 // Seen from above and from below.
 TEST(Render, BackendsAgreeOnBothSidesOfThinWalledSurfaces) {
     SmallScene small;

@@ -89,11 +89,6 @@ TEST_F(Requests, NamedEffectsThatAreLeftOutAreExplained) {
                 HasSubstr("--effects: 'single' concerns nothing in the scene"));
 }
 
-TEST_F(Requests, MultipleScatteringBehindAnOpenMeshIsThatOfAThickBody) {
-    EXPECT_THAT(bake(kFog, {"--quality", "draft", "--effects", "multiple", "--samples", "200"}).err,
-                AllOf(HasSubstr("the surface of the medium is open"), HasSubstr("thick body")));
-}
-
 TEST_F(Requests, ErrorsThatFixedKnobsKeepOutOfReachNameTheKnobs) {
     const Outcome outcome = bake("", {"--error", "0.01", "--coefficients", "7"});
     EXPECT_THAT(outcome.err,

@@ -7,7 +7,6 @@
 #include "tests/cli/print_json.h"
 #include "tests/cli/run_program.h"
 #include "tests/formats/gltf/asset_builder.h"
-#include "tests/support/cloud_table.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::tests {
@@ -22,20 +21,6 @@ Json slab(const Arguments& arguments) {
 
 double number(const Json& object, const std::string& key) {
     return object.at(key).get<double>();
-}
-
-TEST(Slab, PrintsTheSharesOfTheReferenceTable) {
-    OPALINE_CLOUD_ROWS(rows, "slab_hg");
-    for (const auto& row : rows) {
-        const double cosine = std::cos(row.number("theta_l_deg") * std::acos(-1.0) / 180);
-        const Json all = slab({"--optical-depth", row.text("tau"), "--albedo", row.text("albedo"),
-                               "--g", row.text("g_hg"), "--cosine", Json(cosine).dump()});
-        const bool photons = row.text("method") == "monte_carlo_1sigma";
-        EXPECT_NEAR(number(all, row.text("quantity") == "R" ? "reflectance" : "transmittance"),
-                    row.value(), (photons ? 4 : 1) * row.error())
-            << row.name();
-        EXPECT_LT(number(all, "numerical_error"), 2e-5) << row.name();
-    }
 }
 
 TEST(Slab, EveryMethodSplitsTheSameLightByOrder) {

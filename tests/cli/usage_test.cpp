@@ -35,19 +35,6 @@ TEST(Usage, HelpExplainsACommandByNameAndVIsTheVersion) {
     expect_refused({"help", "rendr"}, 2, "there is no command 'rendr'; did you mean 'render'?");
 }
 
-TEST(Usage, WhatAFirstBakeNeedsStandsFirstInItsHelp) {
-    const std::string help = run_opaline({"bake", "--help"}).out;
-    const std::size_t others = help.find("\nKnobs, which --quality and --error set:\n");
-    ASSERT_NE(others, std::string::npos);
-    for (const char* option :
-         {"--output", "--media", "--quality", "--error", "--metres-per-unit"}) {
-        EXPECT_LT(help.find(option), others) << option;
-    }
-    for (const char* option : {"--threads", "--volume-walks", "--emitter-rays", "--report"}) {
-        EXPECT_GT(help.find(std::string("\n  ") + option), others) << option;
-    }
-}
-
 TEST(Usage, TheManualPageHoldsTheHelpOfEveryCommand) {
     std::string page = read_text(OPALINE_MAN_PAGE);
     EXPECT_THAT(page, StartsWith(".TH OPALINE 1\n.SH NAME\nopaline \\- "));
@@ -129,17 +116,12 @@ TEST(Usage, BadRenderOptionsExitWithTwo) {
     for (const Arguments& options : bad) {
         expect_refused(join(join(render, {out}), options), 2, "");
     }
+    expect_refused(join(render, {out, "--size", "100000x100000"}), 2,
+                   "--size: '100000x100000' is not WIDTHxHEIGHT in pixels, each from 1 to 16384");
     for (const std::string name : {"x.gif", "x"}) {
         expect_refused(join(render, {small.path(name)}), 2, ".png or .exr");
     }
     EXPECT_EQ(list_folder(small.folder()), (Arguments{"scene.glb", "scene.opal"}));
-}
-
-TEST(Usage, EyeInsideItsTargetIsRefused) {
-    SmallScene small;
-    expect_refused({"render", small.baked(), "--light", "white", "-o", small.path("x.png"), "--eye",
-                    "1,2,3", "--target", "1,2,3"},
-                   2, "");
 }
 
 }  // namespace

@@ -64,19 +64,6 @@ TEST(VolumeFiles, TheTableOfNodesDoesNotTakeTheOthersPlace) {
                    "the table of volumes");
 }
 
-TEST(VolumeFiles, AreDrawnAlikeByOpenGlAndTheCpu) {
-    SmallScene small;
-    const std::string file = small.write(make_volume_asset(), "smoke.opal");
-    const std::string gl = small.path("gl.exr"), cpu = small.path("cpu.exr");
-    for (const char* terms : {"all", "volume-multiple", "volume-single"}) {
-        for (const auto& [backend, out] : {std::pair{"gl", gl}, {"cpu", cpu}}) {
-            run_well({"render", file, "--light", "studio", "--terms", terms, "--backend", backend,
-                      "--size", "40x30", "-o", out});
-        }
-        run_well({"compare", gl, cpu, "--max-rel", "2e-3"});
-    }
-}
-
 TEST(VolumeFiles, InfoListsThem) {
     SmallScene small;
     const formats::Asset asset = make_volume_asset();

@@ -2,7 +2,6 @@
 // one frame.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -23,7 +22,7 @@ namespace {
 formats::Scene make_moved_knot(double x, double z) {
     GltfObject knot;
     knot.name = knot.material = "Knot";
-    knot.mesh = make_knot({.height = 250, .along = 160, .around = 20});
+    knot.mesh = make_knot({.height = 250, .along = 96, .around = 12});
     for (glm::dvec3& p : knot.mesh.position) {
         p *= 1e-3;
     }
@@ -49,11 +48,9 @@ TEST(FarScenes, KnotsRelightAsAtTheOrigin) {
     };
     for (const bool translucent : {false, true}) {
         const auto at_origin = relit(0, translucent);
-        for (const double metres : {300.0, 10000.0, 100000.0}) {
-            if (translucent && metres != 10000) continue;
-            EXPECT_LT(tests::relative_rms(relit(metres, translucent), at_origin), 1e-3)
-                << metres << translucent;
-        }
+        // Floats round to 1 and to 8 mm there.
+        const double metres = translucent ? 10000 : 100000;
+        EXPECT_LT(tests::relative_rms(relit(metres, translucent), at_origin), 1e-3) << translucent;
     }
 }
 

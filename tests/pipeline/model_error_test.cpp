@@ -95,9 +95,6 @@ TEST(ModelError, OfMirroredLightIsStatedForGlossyOpaqueSurfacesAlone) {
     EXPECT_EQ(report.mirrored->receivers_checked, report.receivers_checked);
     EXPECT_LT(report.mirrored->rms_relative, 0.03) << "convex: nothing to shadow or to mirror";
     EXPECT_LT(std::abs(report.mirrored->bias), 0.02);
-    std::printf("metal ball: mirrored %.4f [%.4f, %.4f], mean %+.4f\n",
-                report.mirrored->rms_relative, report.mirrored->ci95[0], report.mirrored->ci95[1],
-                report.mirrored->bias);
     // A file that mirrors half as much is half wrong.
     baked.asset.gloss[0].f0 = {0, 0, 0};
     for (formats::Rgb& color : baked.asset.base_color) {
@@ -121,8 +118,6 @@ TEST(ModelError, OfAThinSheetIsThatItIsTooBright) {
               (std::vector<std::string>{"sun:30,60", "sun:150,35", "sun:270,15", "sky:3,35"}));
     ASSERT_EQ(report.by_light.size(), 3u);
     EXPECT_EQ(report.by_light[2].name, "sky:3,35 without its sun");
-    std::printf("sheet: %.3f [%.3f, %.3f], mean %+.3f, missing %.3f\n", report.rms_relative,
-                report.ci95[0], report.ci95[1], report.bias, report.missing);
 }
 
 // Right for a thick body, which shows that suns of path and file are alike; wrong for a thin one.

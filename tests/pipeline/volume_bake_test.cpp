@@ -13,7 +13,6 @@
 namespace opaline::tests {
 namespace {
 
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 Scene make_cloud() {
@@ -36,14 +35,6 @@ TEST(VolumeBake, FileStatesItsErrorByDirectionClass) {
     for (const char* name : {"forward", "side", "back", "even"}) {
         EXPECT_TRUE(stated.at("by_light").contains(name)) << name;
     }
-}
-
-TEST(VolumeBake, ModelCheckTakesMoreRays) {
-    bake::BakeOptions options = small_bake();
-    options.check_model = true;
-    const bake::BakeResult result = bake_scene(make_cloud(), options);
-    EXPECT_EQ(result.volume_error.value().rays_checked, 512u);
-    EXPECT_FALSE(result.model_error.has_value());  // there is no surface
 }
 
 TEST(VolumeBake, AVolumeThatOnlyAbsorbsHasNoErrorToMeasure) {

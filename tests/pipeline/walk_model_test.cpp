@@ -21,7 +21,7 @@ auto model_errors(const tests::Scene& scene, const BakeOptions& options,
     ModelCheckOptions check;
     check.simulated = simulated;
     check.receivers = 24;
-    check.max_events = 3000000;
+    check.max_events = 1500000;
     const BakeResult baked = tests::bake_scene(scene, options);
     const auto report = check_model(scene, baked.asset.view(), check, {});
     EXPECT_TRUE(report);
@@ -39,8 +39,8 @@ TEST(WalkModel, BallsAreAsBrightAsPathTracedAlsoWhereTheDipoleIsNot) {
             {tests::make_sphere(3)}, tests::make_grey_medium(0.99f * sigma_t, 0.01f * sigma_t));
     };
     EXPECT_GT(model_error(ball(3), bake_by(kDipole)), 0.15);
-    EXPECT_LT(model_error(ball(3), bake_by(kWalked)), 0.04);
-    BakeOptions few_sites = bake_by(kWalked);
+    EXPECT_LT(model_error(ball(3), bake_by(kWalked, 100000)), 0.04);
+    BakeOptions few_sites = bake_by(kWalked, 50000);
     few_sites.set(kSites, 500);
     EXPECT_LT(model_error(ball(40), few_sites), 0.04);
 }
@@ -48,7 +48,7 @@ TEST(WalkModel, BallsAreAsBrightAsPathTracedAlsoWhereTheDipoleIsNot) {
 TEST(WalkModel, SelfCheckFindsTheNoiseOfFewWalksAndNoneOfMany) {
     const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(3)},
                                                             tests::make_grey_medium(2.97f, 0.03f));
-    BakeOptions few = bake_by(kWalked, 3000), many = bake_by(kWalked, 600000);
+    BakeOptions few = bake_by(kWalked, 3000), many = bake_by(kWalked, 200000);
     few.cubemap_size = many.cubemap_size = 16;
     const double noisy = tests::bake_scene(ball, few).error.at_receivers.rms_relative;
     const double clean = tests::bake_scene(ball, many).error.at_receivers.rms_relative;
@@ -87,7 +87,7 @@ TEST(WalkModel, StronglyForwardMediumIsAsBrightAsPathTracedByWalksAndNotByTermsO
     medium.phase.g = 0.9f;
     const tests::Scene ball = tests::make_translucent_scene({tests::make_sphere(3)}, medium);
     const auto errors = [&](double model) {
-        BakeOptions options = bake_by(model);
+        BakeOptions options = bake_by(model, 150000);
         options.effects = {"multiple", "single"};
         options.set(kViewTerms, 4);
         return model_errors(ball, options, TermSet::multiple | TermSet::single);

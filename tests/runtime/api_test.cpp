@@ -259,12 +259,5 @@ TEST_F(Api, ComponentsAndGlossAreThoseOfTheLibrary) {
     EXPECT_THAT(opaline_last_error(), HasSubstr("--separate-terms"));
 }
 
-TEST_F(Api, StatusesHaveNames) {
-    for (int status = 0; status <= 6; ++status) {
-        EXPECT_STRNE(opaline_status_string(static_cast<opaline_status>(status)), "unknown status");
-    }
-    EXPECT_EQ(opaline_version(), OPALINE_VERSION);
-}
-
 }  // namespace
 }  // namespace opaline::runtime

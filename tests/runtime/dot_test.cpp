@@ -74,26 +74,6 @@ TEST_P(DotRows, ARowDoesNotDependOnWhereTheRangeIsCut) {
     }
 }
 
-TEST_P(DotRows, IsLinearInTheLight) {
-    const auto [n, code_bits, bands] = GetParam();
-    const SparseRows rows = random_rows(n, code_bits, bands, 5);
-    const RowRange range = whole_range(rows, bands);
-    const LightVector first = random_light(n, 6), second = random_light(n, 7);
-    LightVector mixed = first;
-    for (std::size_t i = 0; i < mixed.rgba.size(); ++i) {
-        mixed.rgba[i] = 2.5f * first.rgba[i] - 0.5f * second.rgba[i];
-    }
-    for (const DotPath path : paths()) {
-        std::vector<Rgb> a(range.rows), b(range.rows), sum(range.rows);
-        dot_rows(rows.view(), range, first, 0, a, path);
-        dot_rows(rows.view(), range, second, 0, b, path);
-        dot_rows(rows.view(), range, mixed, 0, sum, path);
-        for (std::size_t r = 0; r < sum.size(); ++r) {
-            ASSERT_NEAR(sum[r].g, 2.5f * a[r].g - 0.5f * b[r].g, 2e-5f);  // up to 46 terms of 3
-        }
-    }
-}
-
 INSTANTIATE_TEST_SUITE_P(Widths, DotRows,
                          testing::Values(Widths{8, 8, 1}, Widths{8, 8, 3}, Widths{32, 16, 1},
                                          Widths{32, 16, 3}, Widths{128, 8, 1}, Widths{128, 8, 3},
@@ -103,39 +83,6 @@ INSTANTIATE_TEST_SUITE_P(Widths, DotRows,
                                     std::to_string(width.param.code_bits) + "_bands" +
                                     std::to_string(width.param.bands);
                          });
-
-TEST(DotRowsBands, GreyRowsEqualRgbRowsOfThreeEqualBands) {
-    for (const std::uint32_t code_bits : {8u, 16u}) {
-        const std::uint32_t n = 16;
-        SparseRows grey = formats::make_sparse_rows(n, code_bits);
-        SparseRows rgb = formats::make_sparse_rows(n, code_bits);
-        formats::SparseRow row;
-        for (std::uint32_t k = 1; k < 1500; k += 13) {
-            if (k % (n * n) != 0) {
-                row.index.push_back(k);
-                row.value.push_back(std::sin(static_cast<float>(k)));
-            }
-        }
-        row.average = {1, 0.5f, -0.25f, 0.125f, 0, 0.3f};
-        formats::append_row(grey, row);
-        const formats::SparseRow once = row;
-        row.bands = 3;
-        for (int copy = 0; copy < 2; ++copy) {
-            row.value.insert(row.value.end(), once.value.begin(), once.value.end());
-            row.average.insert(row.average.end(), once.average.begin(), once.average.end());
-        }
-        formats::append_row(rgb, row);
-        const LightVector light = random_light(n, 9);
-        for (const DotPath path : paths()) {
-            std::vector<Rgb> a(1), b(1);
-            dot_rows(grey.view(), whole_range(grey, 1), light, 0, a, path);
-            dot_rows(rgb.view(), whole_range(rgb, 3), light, 0, b, path);
-            EXPECT_NEAR(a[0].r, b[0].r, 1e-5f);  // 115 terms below 1: only rounding differs
-            EXPECT_NEAR(a[0].g, b[0].g, 1e-5f);
-            EXPECT_NEAR(a[0].b, b[0].b, 1e-5f);
-        }
-    }
-}
 
 }  // namespace
 }  // namespace opaline::runtime

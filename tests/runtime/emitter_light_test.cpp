@@ -34,14 +34,6 @@ std::vector<Rgb> shaded(const Asset& asset, const LightVector& light, const Emit
     return tests::shaded(asset, light, options);
 }
 
-TEST(EmitterLight, AllOffInBlackLightIsBlack) {
-    const Asset asset = emitting_asset();
-    const std::vector<Rgb> off(2);
-    for (const EmitterLight& emitters : {dark_emitters(), EmitterLight{off}}) {
-        EXPECT_THAT(shaded(asset, black_light(), emitters), testing::Each(Rgb{}));
-    }
-}
-
 TEST(EmitterLight, OpaqueSurfacesShowItTimesTheirBaseColourAndTheirOwn) {
     const Asset asset = emitting_asset();
     const formats::AssetView view = asset.view();
@@ -59,22 +51,6 @@ TEST(EmitterLight, OpaqueSurfacesShowItTimesTheirBaseColourAndTheirOwn) {
     EXPECT_NEAR(without[3].b, 0.7f * value.b, 1e-4f);
 }
 
-// The light of several emitters is the sum of that of each.
-TEST(EmitterLight, IsLinear) {
-    const Asset asset = emitting_asset();
-    const std::vector<Rgb> first{{1, 0.5f, 2}, {}}, second{{}, {3, 1, 0.25f}},
-        both{{1, 0.5f, 2}, {3, 1, 0.25f}};
-    const formats::Vec3 eye{0.2f, 0.3f, 5};
-    const auto a = shaded(asset, black_light(), {first}, eye),
-               b = shaded(asset, black_light(), {second}, eye),
-               sum = shaded(asset, black_light(), {both}, eye);
-    for (std::size_t i = 0; i < sum.size(); ++i) {
-        if (a[i].r == 0 || b[i].r == 0 || a[i].b == 0 || b[i].b == 0) continue;  // clamped at 0
-        EXPECT_NEAR(sum[i].r, a[i].r + b[i].r, 1e-3f) << i;
-        EXPECT_NEAR(sum[i].b, a[i].b + b[i].b, 1e-3f) << i;
-    }
-}
-
 TEST(EmitterLight, ThinWallsShowTheSideThatIsSeen) {
     const Asset asset = emitting_asset();
     const formats::AssetView view = asset.view();
@@ -84,10 +60,6 @@ TEST(EmitterLight, ThinWallsShowTheSideThatIsSeen) {
     const auto behind = shaded(asset, black_light(), {}, formats::Vec3{0, 0, -5});
     EXPECT_NEAR(front[9].g, block_value(view.emitters, blocks[0], 2).g, 1e-3f);
     EXPECT_NEAR(behind[9].g, block_value(view.emitters, blocks[0], 3).g, 1e-3f);
-}
-
-TEST(EmitterLight, RangesAndThreadsDoNotMatter) {
-    tests::expect_same_in_threads_and_ranges(emitting_asset(), tests::random_light(8, 5));
 }
 
 // What a renderer interpolates has no light of the surface itself.

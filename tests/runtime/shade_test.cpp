@@ -58,10 +58,6 @@ TEST(Shade, RadianceIsBaseColourTimesTheDotProductAndNotBelowZero) {
     EXPECT_EQ(out.back(), Rgb{});
 }
 
-TEST(Shade, ThreadsAndRangesDoNotChangeABit) {
-    tests::expect_same_in_threads_and_ranges(make_flat_asset(8), tests::random_light(8, 14));
-}
-
 // An unoccluded diffuse receiver under a white sky has its albedo as radiance. All coefficients
 // kept, 16-bit codes; transport values are texel means by exact first moments.
 TEST(Shade, WhiteFurnaceGivesTheAlbedo) {

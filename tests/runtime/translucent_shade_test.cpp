@@ -73,27 +73,6 @@ TEST(TranslucentShade, AddsAllTermsAtTheRefractedDirectionToTheEye) {
     }
 }
 
-TEST(TranslucentShade, WithoutAnEyeEachReceiverIsSeenAlongItsNormal) {
-    const Asset asset = make_translucent_asset(4);
-    const LightVector light = tests::random_light(8, 6);
-    const std::vector<Rgb> out = shaded(asset, light);
-    for (std::uint32_t v = asset.primitives[1].first_vertex; v < out.size(); v += 3) {
-        const auto all = shaded(asset, light, {.eye = asset.position[v] + 2.0f * asset.normal[v]});
-        EXPECT_NEAR(out[v].r, all[v].r, 1e-5f * (1 + out[v].r));
-        EXPECT_NEAR(out[v].b, all[v].b, 1e-5f * (1 + out[v].b));
-    }
-}
-
-TEST(TranslucentShade, DiffuseReceiversDoNotDependOnTheEyeByABit) {
-    const Asset asset = make_translucent_asset(4);
-    const LightVector light = tests::random_light(8, 7);
-    const auto here = shaded(asset, light),
-               there = shaded(asset, light, {.eye = Vec3{1, 2, 3}, .fresnel = false});
-    const std::uint32_t first = asset.primitives[1].first_vertex;
-    EXPECT_TRUE(std::equal(here.begin(), here.begin() + first, there.begin()));
-    EXPECT_FALSE(std::equal(here.begin() + first, here.end(), there.begin() + first));
-}
-
 TEST(TranslucentShade, BackFacesAreBlackUnlessDoubleSided) {
     const Vec3 eye{0, 20, 0};
     const Asset single = make_translucent_asset(4),

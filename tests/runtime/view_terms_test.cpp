@@ -39,15 +39,6 @@ formats::PrimitiveRecord translucent(float eta) {
     return primitive;
 }
 
-TEST(FresnelTransmittance, AtNormalIncidenceIsTheClosedForm) {
-    for (const float eta : kEtas) {
-        const double r = (static_cast<double>(eta) - 1) / (static_cast<double>(eta) + 1);
-        EXPECT_NEAR(fresnel_transmittance(1, eta), 1 - r * r, 3e-7) << eta;
-    }
-    EXPECT_NEAR(1 - fresnel_transmittance(1, 1.3f), 0.01701, 1e-5);
-    EXPECT_NEAR(1 - fresnel_transmittance(1, 1.5f), 0.04, 1e-6);
-}
-
 TEST(FresnelTransmittance, IsTheFormulaAtEveryAngleWithoutItsCancellation) {
     for (const float eta : kEtas) {
         for (int i = 1; i <= 2000; ++i) {
@@ -57,23 +48,6 @@ TEST(FresnelTransmittance, IsTheFormulaAtEveryAngleWithoutItsCancellation) {
             const double under_root = (eta - 1.0) * (eta + 1.0) + static_cast<double>(c) * c;
             const double slack = 2e-7 / std::sqrt(std::max(under_root, 1e-7));
             EXPECT_NEAR(fresnel_transmittance(c, eta), expected, 2e-6 + slack)
-                << "c " << c << ", eta " << eta;
-        }
-    }
-}
-
-TEST(FresnelTransmittance, IsTheSameOnBothSidesOfTheBoundary) {
-    for (const float eta : kEtas) {
-        for (int i = 1; i <= 100; ++i) {
-            const double c = i / 100.0, e = static_cast<double>(eta);
-            const double squared = 1 - (1 - c * c) / (e * e);
-            if (squared < 1e-3) continue;  // total reflection, or beside it
-            const double behind = std::sqrt(squared);
-            // A rounding of c' moves c by up to eta^2 c' / c times as much, and the other way
-            // round.
-            const double slack = 5e-7 * std::max(e * e, 1 / (e * e)) / std::min(c, behind);
-            EXPECT_NEAR(fresnel_transmittance(static_cast<float>(c), eta),
-                        fresnel_transmittance(static_cast<float>(behind), 1 / eta), 2e-6 + slack)
                 << "c " << c << ", eta " << eta;
         }
     }
@@ -161,19 +135,6 @@ TEST(ViewOfReceiver, IsTowardTheEyeOrAlongTheNormal) {
     EXPECT_EQ(fresnel_transmittance(bare.cosine, 1.3f), 0);
     const std::array<Rgb, 4> product{{{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}}};
     EXPECT_TRUE(std::isfinite(sum_view_terms(bare, translucent(1.3f), product).r));
-}
-
-TEST(ViewTerms, OneTermIsOneAndSeveralAreHarmonics) {
-    float one = 0;
-    eval_view_terms({0, 0, 1}, {&one, 1});
-    EXPECT_EQ(one, 1);
-    std::array<float, 4> four{};
-    eval_view_terms({0.6f, 0, 0.8f}, four);
-    const float y1 = std::sqrt(3 / (4 * std::numbers::pi_v<float>));
-    EXPECT_NEAR(four[0], std::sqrt(1 / (4 * std::numbers::pi_v<float>)), 1e-6f);
-    EXPECT_NEAR(four[1], 0, 1e-6f);
-    EXPECT_NEAR(four[2], 0.8f * y1, 1e-6f);
-    EXPECT_NEAR(four[3], 0.6f * y1, 1e-6f);
 }
 
 // Henyey-Greenstein is diagonal in spherical harmonics with eigenvalues g^l (Funk-Hecke):

@@ -44,11 +44,5 @@ TEST(RenderLine, ErrorsByReceiverNeedTheCameraAlone) {
               "--receiver-errors 0.05 -o a.png");
 }
 
-TEST(QuoteWord, LeavesPlainOnesAlone) {
-    EXPECT_EQ(quote_word("sky:3,35"), "sky:3,35");
-    EXPECT_EQ(quote_word(""), "''");
-    EXPECT_EQ(quote_word("$(rm)"), "'$(rm)'");
-}
-
 }  // namespace
 }  // namespace opaline::cli

@@ -96,12 +96,6 @@ TEST(ViewScript, EveryFaultIsNamedByItsLine) {
     EXPECT_EQ(faults[6].where, "line 8");
 }
 
-TEST(ViewScript, HelpNamesEveryCommandItTakes) {
-    for (const char* command : {"orbit", "turn", "screenshot FILE.png", "wait-reload", "quit"}) {
-        EXPECT_THAT(script_help(), HasSubstr(command));
-    }
-}
-
 TEST(DropFile, EndingAndPlaceSayWhatItIsFor) {
     ViewState state;
     state.file = "a.opal";

@@ -5,16 +5,6 @@
 namespace opaline::cli {
 namespace {
 
-TEST(ViewState, LightTurnsWithinOneCircle) {
-    ViewState state;
-    for (const double degrees : {-1e-300, 360.0, 725.0, -5.0}) {
-        rotate_light_to(state, degrees);
-        EXPECT_GE(state.rotate_light, 0);
-        EXPECT_LT(state.rotate_light, 360);
-    }
-    EXPECT_EQ(state.rotate_light, 355);
-}
-
 TEST(ViewState, AnEmitterAsAuthoredIsNoChange) {
     ViewState state;
     set_emitter(state, "Lamp", {2, 1, 1});

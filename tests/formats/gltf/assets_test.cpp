@@ -21,17 +21,5 @@ TEST(GltfAssets, EveryModelLoadsOrIsRefusedWithAMessage) {
     EXPECT_GT(models, 0u);
 }
 
-TEST(GltfAssets, DragonHasItsVerticesAndUnitNormals) {
-    OPALINE_ASSET(path, "gltf/dragon-100k.glb");
-    const auto result = formats::import_gltf(path);
-    ASSERT_TRUE(result.has_value()) << errors_of(result);
-    const auto& p = result->scene.primitives.at(0);
-    EXPECT_EQ(p.position.size(), 100250u);
-    EXPECT_EQ(p.index.size(), 607560u);
-    for (const glm::vec3& normal : p.normal) {
-        ASSERT_NEAR(glm::length(normal), 1.0f, 1e-6f);
-    }
-}
-
 }  // namespace
 }  // namespace opaline::tests

@@ -109,15 +109,6 @@ TEST(GltfContainer, MissingAndShortBuffersAreNamed) {
                 HasSubstr("buffer 0: it has 35 bytes, but byteLength is 36"));
 }
 
-TEST(GltfContainer, MissingFileAndFolderAreBadInput) {
-    const TemporaryFolder folder;
-    const auto missing = import_gltf(folder / "none.glb");
-    ASSERT_FALSE(missing.has_value());
-    EXPECT_EQ(missing.error().kind, ErrorKind::bad_input);
-    EXPECT_THAT(errors_of(missing), HasSubstr("cannot be found"));
-    EXPECT_THAT(errors_of(import_gltf(folder.path())), HasSubstr("not a regular file"));
-}
-
 TEST(GltfContainer, OtherFilesAreRefused) {
     EXPECT_THAT(errors_of(import_text("")), HasSubstr("the file is empty"));
     EXPECT_THAT(errors_of(import_text("solid cube")), HasSubstr("this is not glTF"));

@@ -43,12 +43,6 @@ TEST(GltfTranslucency, VolumeAndScatterBecomeAMedium) {
     EXPECT_EQ(wax.medium->roughness, 0.25f);
 }
 
-TEST(GltfTranslucency, LightFallsToAttenuationColourOverAttenuationDistance) {
-    // Beer-Lambert: exp(-sigma_t d) = c, whatever the share that scatters.
-    const Medium medium = *mapped(asset_with_extensions(scattering_extensions())).medium;
-    EXPECT_NEAR(std::exp(-0.02 * (medium.sigma_s.g + medium.sigma_a.g)), 0.5, 1e-6);
-}
-
 TEST(GltfTranslucency, AttenuationDistanceIsInWorldUnitsNotScaledByNodes) {
     const Medium metres = *mapped(asset_with_extensions(scattering_extensions())).medium;
     const Medium centimetres =

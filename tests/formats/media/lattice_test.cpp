@@ -11,32 +11,6 @@ namespace {
 
 const Lattice kLattice{5, 3, 100};
 
-TEST(Lattice, NoiseIsZeroAtCornersAndRepeats) {
-    for (const double turn : {0.0, 1.0}) {
-        Lattice lattice = kLattice;
-        lattice.evolves = turn > 0;
-        lattice.turn = turn;
-        const Noise noise = make_noise(lattice, 7);
-        EXPECT_EQ(noise.slope.size(), 15u);
-        EXPECT_EQ(eval_noise(noise, {2, 1}), 0);
-        EXPECT_NE(eval_noise(noise, {2.4, 1.3}), 0);
-        EXPECT_NEAR(eval_noise(noise, {2.4, 1.3}), eval_noise(noise, {2.4 + 10, 1.3 - 6}), 1e-12);
-        EXPECT_NEAR(eval_noise(noise, {-0.2, -1.3}), eval_noise(noise, {4.8, 1.7}), 1e-12);
-        EXPECT_NEAR(eval_noise(noise, {3 - 1e-9, 0.5}), eval_noise(noise, {3, 0.5}), 1e-7);
-    }
-}
-
-// Half a turn turns every gradient over.
-TEST(Lattice, NoiseIsItsOppositeAfterHalfATurn) {
-    Lattice half = kLattice;
-    half.evolves = true;
-    half.turn = std::numbers::pi;
-    const Noise now = make_noise(kLattice, 7), later = make_noise(half, 7);
-    for (const double x : {0.3, 1.7, 4.1}) {
-        EXPECT_NEAR(eval_noise(later, {x, 0.4}), -eval_noise(now, {x, 0.4}), 1e-12);
-    }
-}
-
 TEST(Lattice, OctavesAddUpWithTheirWeights) {
     const auto octaves = make_octaves(kLattice, 2, 7);
     const double first = eval_noise(make_noise(kLattice, 7), {1.3, 0.6});

@@ -11,9 +11,7 @@ namespace {
 
 using formats::media_preset;
 using formats::media_preset_names;
-using formats::Medium;
 using formats::PhaseFunction;
-using formats::Rgb;
 
 TEST(MediaPresets, AllTwelveMeasuredMediaAreThereAndSound) {
     ASSERT_EQ(media_preset_names().size(), 12u);
@@ -25,23 +23,6 @@ TEST(MediaPresets, AllTwelveMeasuredMediaAreThereAndSound) {
         EXPECT_EQ(medium->phase.type, PhaseFunction::Type::isotropic) << name;
         EXPECT_EQ(medium->eta, name == "marble" ? 1.5f : 1.3f) << name;
     }
-}
-
-TEST(MediaPresets, CoefficientsArePerMetreNotPerMillimetre) {
-    EXPECT_EQ(media_preset("marble")->sigma_s, (Rgb{2190, 2620, 3000}));
-    EXPECT_EQ(media_preset("marble")->sigma_a, (Rgb{2.1f, 4.1f, 7.1f}));
-}
-
-TEST(MediaPresets, OnlySpectralonAbsorbsNothing) {
-    for (const std::string_view name : media_preset_names()) {
-        EXPECT_EQ(media_preset(name)->sigma_a == Rgb{}, name == "spectralon") << name;
-    }
-}
-
-TEST(MediaPresets, KetchupIsRedAndSkimMilkScattersBlueMost) {
-    const Medium ketchup = *media_preset("ketchup"), milk = *media_preset("skim-milk");
-    EXPECT_LT(ketchup.sigma_a.r, 0.1f * ketchup.sigma_a.b);
-    EXPECT_GT(milk.sigma_s.b, 2 * milk.sigma_s.r);
 }
 
 TEST(MediaPresets, SkimMilkHasTwoSpellingsAndOtherNamesAreUnknown) {

@@ -54,21 +54,6 @@ TEST(ReadCloud, EveryKeyArrives) {
     EXPECT_EQ(layer.ground_albedo[0], (Code{0, 255, 124, 255}));  // sRGB of .2: .4845
 }
 
-TEST(ReadCloud, DefaultsAreAClearDayOverGreyGround) {
-    const CloudEntry cloud = read_layer(R"("procedural": {"type": "cellular"})");
-    ASSERT_TRUE(cloud.shape);
-    EXPECT_EQ(cloud.shape->type, formats::HeightFieldShape::Type::cellular);
-    EXPECT_EQ(cloud.shape->scale, 1000);
-    EXPECT_EQ(cloud.shape->coverage, 1);
-    EXPECT_EQ(cloud.shape->seed, 1u);
-    EXPECT_EQ(cloud.shape->resolution, 512u);
-    EXPECT_EQ(cloud.thickness, 300);
-    const CloudLayer& layer = cloud.layer;
-    EXPECT_EQ(layer.name, "layer 1 (cellular)");
-    EXPECT_EQ(layer.ground_albedo, (std::vector<Code>{{124, 124, 124, 255}}));
-    EXPECT_TRUE(is_sound(cloud));
-}
-
 TEST(ReadCloud, WithoutAPictureOrAFormulaALayerIsEven) {
     const CloudEntry cloud = read_layer(R"("thickness": 120)");
     EXPECT_FALSE(cloud.shape);

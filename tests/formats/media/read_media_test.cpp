@@ -55,13 +55,6 @@ TEST(ReadMedia, ReducedScatteringIsDividedByOneLessG) {
     EXPECT_EQ(isotropic.sigma_s, (Rgb{3000, 3000, 3000}));
 }
 
-TEST(ReadMedia, ScatteringGivenAsItIsStaysWhateverThePhase) {
-    EXPECT_EQ(medium_of(R"("sigma_s": [3, 3, 3], "sigma_a": [0, 0, 0], "unit": "1/m",
-                           "phase": {"type": "hg", "g": 0.5})")
-                  .sigma_s,
-              (Rgb{3, 3, 3}));
-}
-
 TEST(ReadMedia, PresetIsReducedScatteringToo) {
     const Medium preset = *formats::media_preset("marble");
     EXPECT_EQ(medium_of(R"("preset": "marble")").sigma_s, preset.sigma_s);

@@ -34,18 +34,6 @@ TEST(ReadVolume, EveryKeyArrives) {
     EXPECT_EQ(media->inputs.size(), 2u) << "the volume's file is an input";
 }
 
-TEST(ReadVolume, DefaultsAreDensityPerMetreAndAGreyAlbedoOf99Percent) {
-    const auto media = read_entry("{}");
-    ASSERT_TRUE(media) << faults(media);
-    const VolumeEntry& v = media->volumes[0];
-    EXPECT_TRUE(v.file.empty());
-    EXPECT_EQ(v.sigma_t, (Rgb{1, 1, 1}));
-    EXPECT_EQ(v.albedo, (Rgb{0.99f, 0.99f, 0.99f}));
-    EXPECT_EQ(v.scale, 1);
-    EXPECT_EQ(v.phase.type, formats::PhaseFunction::Type::isotropic);
-    EXPECT_EQ(v.transform, glm::dmat4(1));
-}
-
 TEST(ReadVolume, LightOfItsOwnIsOneGridAndItsScales) {
     const auto media = read_entry(R"({"temperature": "heat", "temperature_scale": 3000,
                                       "emission_scale": 1e-5})");
@@ -76,16 +64,6 @@ TEST(ReadVolume, ExtinctionIsPerMillimetreUnlessItSaysPerMetre) {
     const auto media = read_entry(R"({"sigma_t": [1, 2, 3]})");
     ASSERT_TRUE(media) << faults(media);
     EXPECT_EQ(media->volumes[0].sigma_t, (Rgb{1000, 2000, 3000}));
-}
-
-TEST(ReadVolume, AnAlbedoIsANumberABandOrTheNameOfAGrid) {
-    const auto named = read_entry(R"({"albedo": "colour"})");
-    ASSERT_TRUE(named) << faults(named);
-    EXPECT_EQ(named->volumes[0].albedo_grid, "colour");
-    const auto given = read_entry(R"({"albedo": [0.5, 0.25, 1]})");
-    ASSERT_TRUE(given) << faults(given);
-    EXPECT_EQ(given->volumes[0].albedo, (Rgb{0.5f, 0.25f, 1}));
-    EXPECT_TRUE(given->volumes[0].albedo_grid.empty());
 }
 
 TEST(ReadVolume, MaterialsMayBeMissingBesideVolumes) {

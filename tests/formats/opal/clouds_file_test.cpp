@@ -3,11 +3,9 @@
 
 #include <cstdint>
 #include <limits>
-#include <span>
 #include <string>
 
 #include "formats/opal/check_clouds.h"
-#include "formats/opal/used_part.h"
 #include "tests/formats/opal/asset_fixture.h"
 #include "tests/formats/opal/cloud_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
@@ -55,59 +53,6 @@ TEST(CloudsFile, StandsBesideAllElseAndIsAbsentWithoutLayers) {
     expect_same_clouds(stored.view().clouds, asset.clouds.view());
     EXPECT_EQ(stored.view().volumes.records.size(), 1u);
     EXPECT_EQ(stored.view().primitives.size(), 2u);
-}
-
-// Tables of a band follow each other in the order of formats/README.md, bands too.
-TEST(CloudsFile, TablesOfABandFollowEachOther) {
-    LayerRecord layer;
-    layer.phase_angles = 2;
-    layer.glow_angles = 3;
-    layer.glow_events = 2;
-    layer.flux_depths = 2;
-    layer.flux_cosines = 4;
-    layer.radiance_depths = 2;
-    layer.radiance_cosines = 3;
-    layer.radiance_modes = 5;
-    layer.first_value = 7;
-    EXPECT_EQ(layer.band_values(), 2u + 6 + 3 * 8 + 2 + 2 * 90);
-    Clouds clouds;
-    for (std::size_t i = 0; i < 7 + layer.value_count(); ++i) {
-        clouds.value.push_back(static_cast<float>(i));
-    }
-    clouds.records.push_back(layer);
-    std::size_t next = 7;
-    const auto expect_next = [&next](std::span<const float> part, std::size_t count) {
-        ASSERT_EQ(part.size(), count);
-        EXPECT_EQ(part.front(), static_cast<float>(next));
-        next += count;
-    };
-    for (std::size_t band = 0; band < 3; ++band) {
-        const LayerTables tables = tables_of(clouds.view(), layer, band);
-        expect_next(tables.log_phase, 2);
-        expect_next(tables.glow, 6);
-        expect_next(tables.t1, 8);
-        expect_next(tables.t_ms, 8);
-        expect_next(tables.r1, 8);
-        expect_next(tables.mean_t, 2);
-        expect_next(tables.reflected, 90);
-        expect_next(tables.transmitted, 90);
-    }
-    EXPECT_EQ(next, clouds.value.size());
-    EXPECT_TRUE(tables_of(make_cloud_asset({.has_radiance = false}).clouds.view(),
-                          make_cloud_asset({.has_radiance = false}).clouds.records[0], 2)
-                    .reflected.empty());
-}
-
-TEST(UsedPart, NoPartBeginsBeforeTheOnesThatWereTaken) {
-    UsedPart used;
-    EXPECT_TRUE(used.take(2, 3, 10));
-    EXPECT_FALSE(used.take(4, 1, 10));
-    EXPECT_TRUE(used.take(0, 0, 10));
-    EXPECT_FALSE(used.take(9, 2, 10));
-    EXPECT_FALSE(used.take(11, 0, 10));
-    EXPECT_FALSE(used.take(UINT64_MAX, 2, 10));
-    EXPECT_TRUE(used.take(5, 5, 10));
-    EXPECT_FALSE(used.take(9, 1, 10));
 }
 
 // The fault of the fixture's layer after change(Clouds&, LayerRecord&).

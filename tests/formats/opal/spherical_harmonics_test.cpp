@@ -19,33 +19,6 @@ Vec3 spherical(double cosine, double azimuth) {
             static_cast<float>(sine * std::sin(azimuth)), static_cast<float>(cosine)};
 }
 
-// Products of two have degree 8 in the cosine and azimuthal frequency 8: five Gauss-Legendre nodes
-// and 16 equal steps integrate them exactly.
-TEST(SphericalHarmonics, AreOrthonormal) {
-    constexpr std::array<double, 5> node{-0.9061798459386640, -0.5384693101056831, 0,
-                                         0.5384693101056831, 0.9061798459386640};
-    constexpr std::array<double, 5> weight{0.2369268850561891, 0.4786286704993665,
-                                           0.5688888888888889, 0.4786286704993665,
-                                           0.2369268850561891};
-    std::array<std::array<double, kMaxHarmonics>, kMaxHarmonics> gram{};
-    for (std::size_t i = 0; i < node.size(); ++i) {
-        for (int j = 0; j < 16; ++j) {
-            Values y;
-            eval_spherical_harmonics(spherical(node[i], j * std::numbers::pi / 8), y);
-            for (std::size_t a = 0; a < y.size(); ++a) {
-                for (std::size_t b = 0; b < y.size(); ++b) {
-                    gram[a][b] += weight[i] * std::numbers::pi / 8 * y[a] * y[b];
-                }
-            }
-        }
-    }
-    for (std::size_t a = 0; a < gram.size(); ++a) {
-        for (std::size_t b = 0; b < gram.size(); ++b) {
-            EXPECT_NEAR(gram[a][b], a == b ? 1.0 : 0.0, 2e-6) << a << ", " << b;  // float values
-        }
-    }
-}
-
 // Signs and order: against associated Legendre functions, whose Condon-Shortley sign is taken off.
 TEST(SphericalHarmonics, AreTheTextbookOnesInOrder) {
     std::mt19937 generator(3);

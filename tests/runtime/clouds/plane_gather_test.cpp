@@ -102,35 +102,9 @@ TEST(PlaneGather, PlanesMuchFartherThanTheGridSeeItsMeanOrTheOutside) {
     }
 }
 
-// The form factor of a centred square of side s at distance h.
-TEST(PlaneGather, SquareCloudOverAPointHasItsFormFactor) {
-    const PlaneGrid grid{201, 201, 10, 10, 250, false};
-    const GatherPlan plan = make_gather_plan(grid);
-    for (const int half : {5, 12, 25, 50, 75}) {
-        const double side = 10.0 * (2 * half + 1), x = side / (2 * 250);
-        const double q = x / std::sqrt(1 + x * x);
-        const double exact = 4 / std::numbers::pi * q * std::atan(q);
-        const auto cells = paint(grid, [&](double px, double pz) {
-            return std::abs(px - 1005) < side / 2 && std::abs(pz - 1005) < side / 2 ? 1.0f : 0.0f;
-        });
-        const double seen = static_cast<double>(gather(plan, cells, {})[100 * 201 + 100].r);
-        EXPECT_NEAR(seen / exact, 1, 3e-3) << side;
-    }
-}
-
 // A half plane whose edge is d away has the share (1 - d / sqrt(h^2 + d^2)) / 2.
 double share_behind(double d) {
     return (1 - d / std::hypot(100.0, d)) / 2;
-}
-
-TEST(PlaneGather, HalfPlaneHasTheShareBehindItsEdge) {
-    const PlaneGrid wide{400, 400, 25, 25, 100, false};
-    const auto half = paint(wide, [](double x, double) { return x > 5000 ? 1.0f : 0.0f; });
-    const std::vector<Rgb> seen = gather(make_gather_plan(wide), half, {});
-    for (const std::uint32_t at : {0u, 2u, 4u, 8u, 16u}) {
-        const double d = (at + 0.5) * 25;
-        EXPECT_NEAR(static_cast<double>(seen[200 * 400 + 199 - at].r), share_behind(d), 2e-3) << d;
-    }
 }
 
 TEST(PlaneGather, BeyondAnEdgeLiesTheOutside) {

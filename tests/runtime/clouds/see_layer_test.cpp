@@ -203,22 +203,6 @@ TEST(SeeLayer, SlopesThatFaceTheSunAreBrighterFromAbove) {
     EXPECT_GT(look(6), 1.02f * look(2));
 }
 
-TEST(SeeLayer, WindCarriesItAlong) {
-    Clouds clouds = heaps(true);
-    clouds.records[0].wind = {8, -3};
-    const test::LitLayer now(clouds, test::sunny_day(0.1f, 0.5)),
-        later(clouds, test::sunny_day(0.1f, 0.5), {.time = 50});
-    const auto through = [](const test::LitLayer& lit, float x, float z) {
-        return see_layer(lit.light, {{x, 0, z}, test::direction_of(0.8, 1)}).transmittance.g;
-    };
-    float moved = 0;
-    for (float x = 0; x < 8000; x += 400) {
-        EXPECT_NEAR(through(later, x + 400, 100 - 150), through(now, x, 100), 1e-3f);
-        moved = std::max(moved, std::abs(through(later, x, 100) - through(now, x, 100)));
-    }
-    EXPECT_GT(moved, 0.1f);
-}
-
 TEST(GroundLight, ShadowsLieAwayFromTheSun) {
     // One heap in the middle of nothing, the sun 45 degrees high toward +X: its shadow is at -1000.
     Clouds one = heaps(false, 200);

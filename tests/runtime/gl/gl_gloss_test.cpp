@@ -62,7 +62,7 @@ TEST_F(GlGloss, PicturesAgreeWithTheCpuInEveryComponent) {
     formats::Environment sky = tests::lat_long_map(128, 64, test::two_lights);
     sky.discs = {{normalize(formats::Vec3{0.3f, 0.8f, 0.5f}), 0.0046f, {8000, 7000, 6000}}};
     test::BothRenderers both(asset, sky, rotation_about_y(0.7f));
-    Camera camera = frame_asset(asset.view(), 45, 160, 120);
+    Camera camera = frame_asset(asset.view(), 45, 120, 90);
     camera.fov_y = 20;  // the bodies, not the floor around them
     for (const float degrees : {0.0f, 170.0f}) {
         for (const TermSet terms : {TermSet::all, TermSet::specular, TermSet::diffuse}) {

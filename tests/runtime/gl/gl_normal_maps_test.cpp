@@ -66,7 +66,7 @@ Asset asset_with_normal_maps(bool is_glossy) {
 TEST_F(Gl, NormalMapsAgreeWithTheCpu) {
     formats::Environment sky = tests::lat_long_map(64, 32, test::two_lights);
     sky.discs.push_back({normalize(formats::Vec3{0.5f, 1, 0.4f}), 0.01f, {6000, 5000, 4000}});
-    const Camera camera{.eye = {0.5f, 2, 5}, .target = {0, 0.6f, 0}, .width = 96, .height = 72};
+    const Camera camera{.eye = {0.5f, 2, 5}, .target = {0, 0.6f, 0}, .width = 72, .height = 54};
     for (const bool is_glossy : {false, true}) {
         Asset asset = asset_with_normal_maps(is_glossy);
         test::BothRenderers both(asset, sky, rotation_about_y(0.7f));

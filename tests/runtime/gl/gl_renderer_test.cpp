@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "runtime/shade.h"
 #include "tests/runtime/gl/gl_comparison.h"
@@ -59,7 +58,7 @@ TEST_F(Gl, DotProductsAndPicturesAgreeWithTheCpuForEveryKindOfRow) {
                                         << " bits, " << variant.bands << " bands");
         const Asset asset = make_scene(variant);
         BothRenderers(asset, sky, rotation_about_y(0.7f))
-            .expect_agreement(frame_asset(asset.view(), 45, 240, 180));
+            .expect_agreement(frame_asset(asset.view(), 45, 120, 90));
     }
 }
 
@@ -71,7 +70,7 @@ TEST_F(Gl, EverySurfaceAgreesWithItsEmittersLitDimmedAndSwitchedOff) {
                                          EmitterLight{dimmed, false}, dark_emitters()}) {
         both.set_emitters(emitters);
         both.expect_agreement(
-            {.eye = {0.5f, 2, 7}, .target = {0, 0.7f, 0}, .fov_y = 32, .width = 120, .height = 90});
+            {.eye = {0.5f, 2, 7}, .target = {0, 0.7f, 0}, .fov_y = 32, .width = 80, .height = 60});
     }
 }
 
@@ -186,19 +185,6 @@ TEST_F(Gl, RenderersLiveSideBySideAndLeaveNoContextBehind) {
     const auto after = moved.render(camera);
     ASSERT_TRUE(after.has_value());
     EXPECT_EQ(alone.pixel, after->pixel);
-}
-
-TEST_F(Gl, StatisticsAreFilledIn) {
-    const Asset asset = make_scene({16, 8, 1, 100});
-    BothRenderers both(asset, tests::lat_long_map(32, 16, test::two_lights));
-    both.on_gl(frame_asset(asset.view(), 40, 64, 48));
-    const GlStats& stats = both.renderer.stats();
-    for (const double seconds : {stats.upload_seconds, stats.light_seconds, stats.dot_seconds,
-                                 stats.draw_seconds, stats.readback_seconds}) {
-        EXPECT_GT(seconds, 0.0);
-    }
-    EXPECT_GE(stats.gpu_bytes, asset.transport.code8.size() + asset.position.size() * 12);
-    EXPECT_FALSE(stats.device.empty());
 }
 
 TEST_F(Gl, DamagedValuesNeverReachThePicture) {

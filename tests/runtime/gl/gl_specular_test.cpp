@@ -56,24 +56,6 @@ Camera camera_at_bodies(const Asset& asset, std::uint32_t width, std::uint32_t h
     return camera;
 }
 
-TEST_F(GlSpecular, PicturesAgreeWithTheCpu) {
-    const Asset asset = make_scene(5);
-    BothRenderers both(asset, sky(), kTurned);
-    for (const float degrees : {0.0f, 170.0f}) {
-        const Camera at = orbit(camera_at_bodies(asset, 200, 150), degrees);
-        both.expect_agreement(at);
-        // The comparison means nothing unless gloss changes the picture.
-        const Picture cpu = both.on_cpu(at),
-                      matt = both.on_cpu(at, {.terms = TermSet::all & ~TermSet::specular});
-        double gloss = 0, sum = 0;
-        for (std::size_t i = 0; i < cpu.pixel.size(); ++i) {
-            gloss += cpu.pixel[i].g - matt.pixel[i].g;
-            sum += matt.pixel[i].g;
-        }
-        EXPECT_GT(gloss, 0.002 * sum);
-    }
-}
-
 // What a cloud layer makes of a light stands in the world's frame; the background is the light's.
 TEST_F(GlSpecular, AnotherEnvironmentThanTheBackgroundIsMirrored) {
     const Asset asset = make_scene(2);
@@ -89,7 +71,8 @@ TEST_F(GlTerms, EachComponentAgreesWithTheCpuAndTheyAddUp) {
         SCOPED_TRACE(testing::Message() << terms << " rows a vertex");
         const Asset asset = make_scene(terms);
         BothRenderers both(asset, sky(), kTurned);
-        const Camera camera = frame_asset(asset.view(), 45, 160, 120);
+        const Camera camera = frame_asset(asset.view(), 45, 120, 90);
+        both.expect_agreement(orbit(camera, 170));
         for (const TermSet shown : {TermSet::all, TermSet::multiple, TermSet::single,
                                     TermSet::specular, TermSet::diffuse}) {
             SCOPED_TRACE(testing::Message() << "components " << formats::term_names(shown));
@@ -100,35 +83,6 @@ TEST_F(GlTerms, EachComponentAgreesWithTheCpuAndTheyAddUp) {
             } else {
                 both.expect_agreement(camera, options);
             }
-        }
-    }
-}
-
-// The rows of these are negative by rounding alone, so that next to nothing is clamped and
-// everything is linear.
-TEST_F(GlTerms, ComponentsAddUpToTheWholePicture) {
-    const Asset asset = make_scene(2, 2000);
-    BothRenderers both(asset, sky(), kTurned);
-    const Camera camera = frame_asset(asset.view(), 45, 120, 90);
-    for (const bool on_gpu : {false, true}) {
-        const auto draw = [&](TermSet terms) {
-            const GlRenderOptions options{.terms = terms, .background = false};
-            return (on_gpu ? both.on_gl(camera, options) : both.on_cpu(camera, options)).pixel;
-        };
-        std::vector<Rgb> whole = draw(TermSet::all), sum(whole.size());
-        for (const TermSet term :
-             {TermSet::multiple, TermSet::single, TermSet::specular, TermSet::diffuse}) {
-            const std::vector<Rgb> part = draw(term);
-            double total = 0;
-            for (std::size_t i = 0; i < whole.size(); ++i) {
-                sum[i] = sum[i] + part[i];
-                total += part[i].g;
-            }
-            EXPECT_GT(total, 0) << formats::term_names(term);
-        }
-        for (std::size_t i = 0; i < whole.size(); ++i) {
-            ASSERT_NEAR(sum[i].r, whole[i].r, 2e-3f + 1e-5f * whole[i].r) << on_gpu << " " << i;
-            ASSERT_NEAR(sum[i].b, whole[i].b, 2e-3f + 1e-5f * whole[i].b) << on_gpu << " " << i;
         }
     }
 }

@@ -90,7 +90,7 @@ Asset volumes_and_sheet(const std::vector<test::TestVolume>& volumes) {
 }
 
 Camera camera() {
-    return {.eye = {0.7f, 0.6f, 3.5f}, .fov_y = 35, .width = 90, .height = 70, .near_plane = 0.1f};
+    return {.eye = {0.7f, 0.6f, 3.5f}, .fov_y = 35, .width = 60, .height = 46, .near_plane = 0.1f};
 }
 
 const formats::Environment kSky = tests::lat_long_map(64, 32, test::two_lights);
@@ -142,11 +142,8 @@ TEST_F(Gl, VolumesAloneAgreeForEverySpacingAndNumberOfTerms) {
 
 TEST_F(Gl, ASheetInsideAVolumeCutsItAsOnTheCpu) {
     const Asset asset = volumes_and_sheet({smoke(4, 9, 4)});
-    for (const bool background : {true, false}) {
-        for (const std::uint32_t samples : {1u, 3u}) {
-            expect_agreement(asset, camera(), {.supersampling = samples, .background = background});
-        }
-    }
+    expect_agreement(asset, camera(), {.supersampling = 1, .background = true});
+    expect_agreement(asset, camera(), {.supersampling = 3, .background = false});
 }
 
 TEST_F(Gl, OverlappingAndSlantedVolumesAgree) {
@@ -176,8 +173,8 @@ TEST_F(Gl, VolumesAgreeFromInsideAndAtAnyScale) {
 TEST_F(Gl, TermsOfVolumesAreShownApart) {
     const Asset asset = volumes_and_sheet({smoke(8, 9, 4), slanted()});
     BothRenderers both(asset, kSky);
-    for (const TermSet terms : {TermSet::volume_single, TermSet::volume_multiple, TermSet::diffuse,
-                                TermSet::all, TermSet::volume_multiple | TermSet::diffuse}) {
+    for (const TermSet terms :
+         {TermSet::volume_single, TermSet::diffuse, TermSet::volume_multiple | TermSet::diffuse}) {
         both.expect_agreement(camera(), {.terms = terms, .background = false});
     }
 }
@@ -214,7 +211,7 @@ TEST_F(Gl, WithoutALightVolumesOnlyAbsorb) {
     const auto sky = renderer->render(camera());
     ASSERT_TRUE(black && sky);
     EXPECT_TRUE(std::ranges::all_of(black->pixel, [](Rgb c) { return c == Rgb{}; }));
-    EXPECT_LT(sky->pixel[sky->pixel.size() / 2 + 45].b, 0.3f * sky->pixel[0].b);
+    EXPECT_LT(sky->pixel[sky->pixel.size() / 2 + 30].b, 0.3f * sky->pixel[0].b);
 }
 
 TEST_F(Gl, DamagedVolumesNeverReachThePicture) {

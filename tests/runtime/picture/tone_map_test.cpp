@@ -53,11 +53,6 @@ TEST(ToneMap, BrightFireGoesFromOrangeOverYellowToWhite) {
     EXPECT_GT(tone_map_neutral(300 * fire).b, 0.9f);
 }
 
-TEST(ToneMap, VeryBrightColoursTendToWhite) {
-    const Rgb c = tone_map_neutral({1e6f, 10.0f, 10.0f});
-    EXPECT_GT(c.g, 0.99f);
-}
-
 TEST(ToneMap, AnyInputGivesAColour) {
     const float inf = std::numeric_limits<float>::infinity();
     const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -30,12 +30,6 @@ TEST(MomentLights, WhiteLightHasOnlyAMean) {
     }
 }
 
-TEST(MomentLights, TheFinerTheTexelsTheLessOfWhiteLightIsInDegreeFour) {
-    const double coarse = std::abs(tests::flux(moments_of(test::white_light(8), 25)[20], 0));
-    const double fine = std::abs(tests::flux(moments_of(test::white_light(32), 25)[20], 0));
-    EXPECT_NEAR(fine / coarse, 1.0 / 16, 0.01);
-}
-
 TEST(MomentLights, OfATexelAreTheHarmonicsOfItsCentre) {
     constexpr std::uint32_t n = 8, texel = 2 * n * n + 3 * n + 6;
     const LightVector light = test::texel_light(n, texel, {2, 3, 5});

@@ -92,14 +92,6 @@ TEST(SunPhase, WithRowsIsTheExactLawOfManyForwardScatteringsAlongALine) {
     }
 }
 
-// Between its file's cut and the truth it is far from the file.
-TEST(SunPhase, AheadIsSeveralTimesTheCutPhaseFunction) {
-    const formats::Volumes volumes = forward_volume(0.85);
-    const auto cut =
-        static_cast<double>(formats::eval_phase_table(volumes.view().phase_of(0), 1.0f));
-    EXPECT_GT(eval(phase_of(volumes), 1, 1, 0.5, 0.5), 3 * cut);
-}
-
 TEST(SunPhase, OfLightThatDoesNotComeThroughIsFinite) {
     const SunPhase phase = phase_of(forward_volume(0.85));
     for (const float share : {0.0f, -1.0f, 2.0f, 1e-38f}) {

@@ -58,57 +58,38 @@ Camera camera_at_smoke(const formats::Asset& asset, std::uint32_t width, std::ui
             .near_plane = near_plane_for(asset.view(), eye)};
 }
 
-// Two volumes that overlap, one that scatters a sun forward; a sheet cuts them.
-TEST_F(PagePicture, VolumesLookAsOnTheCpuUnderASunBehindThem) {
-    formats::Asset asset = test::make_asset(8, 16);
-    asset.volumes = test::make_volumes(8);
-    test::add_volume(asset.volumes, make_smoke(25, 4, 1));
-    test::TestVolume other = make_smoke(0, 1, 3);
-    other.to_world[3] = -0.8f;
-    test::add_volume(asset.volumes, other);
-    test::add_primitive(
-        asset, test::make_sheet({0, 0.6f, 0.1f}, {0.5f, 0, 0.4f}, {0, 0.4f, 0.2f}, 2, 1), {});
-    formats::Environment sky = tests::lat_long_map(64, 32, test::two_lights);
-    sky.discs.push_back({normalize(formats::Vec3{-0.4f, 0.2f, -1}), 0.01f, {4e4f, 3e4f, 1e4f}});
-    const PageLight lights[] = {{"sky", sky}};
-    expect_same_pixels(page_of(asset, lights), "eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2",
-                       camera_at_smoke(asset, 80, 60), [&](const Camera& moved) {
-                           return render_on_cpu(asset.view(), sky, moved, {{}, 20, -2});
-                       });
-}
-
-// Fire of one brick of eight in a volume that is dark elsewhere, beside dark smoke.
-formats::Asset make_fire() {
+// Two volumes that overlap, one that scatters a sun forward and burns in one brick of eight; a
+// sheet cuts them.
+TEST_F(PagePicture, VolumesAndTheirFireLookAsOnTheCpuUnderASunBehindThemInTheSlidersColour) {
     formats::Asset asset = test::make_asset(8, 16);
     formats::append_emitter(asset.emitters, "lamp");
     formats::append_emitter(asset.emitters, "fire");
     asset.volumes = test::make_volumes(8);
-    const test::TestVolume smoke = make_smoke(9, 1, 1);
-    test::TestVolume other = make_smoke(1, 0, 3);
-    other.to_world[3] = -1;
+    const test::TestVolume burning = make_smoke(25, 4, 1);
+    test::TestVolume other = make_smoke(0, 1, 3);
+    other.to_world[3] = -0.8f;
     test::add_volume(asset.volumes, other);
-    test::add_volume(asset.volumes, smoke);
-    test::add_glow(asset.volumes, smoke,
+    test::add_volume(asset.volumes, burning);
+    test::add_glow(asset.volumes, burning,
                    [](float x, float y, float z) {
                        const float r2 = (x - 2) * (x - 2) + (y - 2) * (y - 2) + (z - 2) * (z - 2);
                        return std::exp(-r2 / 12) * formats::Rgb{60, 20, 10};
                    },
                    {0.3f, 0.2f, 0.1f});
     asset.volumes.glow.record.back().emitter = 1;
-    return asset;
-}
-
-TEST_F(PagePicture, FireShinesAndLightsItsSmokeAsOnTheCpuInItsSlidersColour) {
-    const formats::Asset asset = make_fire();
-    const PageLight lights[] = {{"sky", tests::lat_long_map(64, 32, test::two_lights)}};
+    test::add_primitive(
+        asset, test::make_sheet({0, 0.6f, 0.1f}, {0.5f, 0, 0.4f}, {0, 0.4f, 0.2f}, 2, 1), {});
+    formats::Environment sky = tests::lat_long_map(64, 32, test::two_lights);
+    sky.discs.push_back({normalize(formats::Vec3{-0.4f, 0.2f, -1}), 0.01f, {4e4f, 3e4f, 1e4f}});
+    const PageLight lights[] = {{"sky", sky}};
     PageView wanted{"eye=0.7,1,4&target=0,0.7,0&rotate=20&exposure=-2&emitter=fire%3D0.5,1,3",
                     20,
                     -2,
                     {{1, 1, 1}, {0.5f, 1, 3}}};
     const auto cpu = [&](const Camera& moved) {
-        return render_on_cpu(asset.view(), lights[0].environment, moved, wanted);
+        return render_on_cpu(asset.view(), sky, moved, wanted);
     };
-    const Camera camera = camera_at_smoke(asset, 64, 48);
+    const Camera camera = camera_at_smoke(asset, 80, 60);
     expect_same_pixels(page_of(asset, lights), wanted.address, camera, cpu);
     const DisplayPicture lit = cpu(camera);
     wanted.emitters[1] = {};
