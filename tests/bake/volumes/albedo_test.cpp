@@ -113,27 +113,6 @@ TEST(VariedAlbedo, AForwardPeakTakesNothingFromWhatIsAbsorbed) {
     }
 }
 
-TEST(VariedAlbedo, ForGreyAlbedosAForwardPeakIsWhatItIsForEachOfThem) {
-    const formats::Volume blob = varied_blob(0.85f, glm::vec3(0.9f), glm::vec3(0.4f));
-    const double f = scale_phase(blob.phase).peak;
-    const ScaledMedium scaled = scale_medium(blob, f);
-    for (const float albedo : {0.9f, 0.4f}) {
-        formats::Volume alone = blob;
-        alone.scattering = {};
-        alone.albedo = {albedo, albedo, albedo};
-        const ScaledMedium own = scale_medium(alone, f);
-        const std::size_t voxel = alone.density.brick_at(alone.density.brick_of({0, 0, 0})) * 512;
-        for (std::size_t i = voxel; i < voxel + 512; ++i) {
-            const float density = blob.density.value[i];
-            if (std::abs(blob.scattering.value[i].x - albedo * density) > 1e-6f * density) continue;
-            EXPECT_NEAR(scaled.sigma_t[0] * scaled.grids->density.value[i],
-                        own.sigma_t[0] * density, 1e-5f);
-            EXPECT_NEAR(scaled.grids->scattering.value[i].x,
-                        own.albedo[0] * scaled.grids->density.value[i], 1e-5f);
-        }
-    }
-}
-
 TEST(VariedAlbedo, NodesHaveTheAlbedoThatIsAroundThem) {
     formats::Volume box = tests::make_volume(
         tests::sample_grid(glm::dvec3(16), 1, [](glm::dvec3) { return 1.0; }), 1, 0, 0);

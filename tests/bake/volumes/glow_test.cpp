@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "bake/plan/plan_input.h"
@@ -60,29 +59,6 @@ TEST(GlowWalks, TheirLightIsScatteredTowardWhereItGoes) {
     EXPECT_GT(found[3].x, 0.5f * found[0].x);
     EXPECT_NEAR(found[1].x, 0, 0.05f * found[0].x);
     EXPECT_NEAR(found[2].x, 0, 0.05f * found[0].x);
-}
-
-TEST(BakeGlow, InEquilibriumWithEvenLightAScatteringVolumeCannotBeSeen) {
-    for (const float g : {0.0f, 0.5f}) {
-        const formats::Scene scene = glowing_blob({1, 3, 6}, {0.9f, 0.7f, 0.4f}, g, glm::vec3(1));
-        const formats::Volumes volumes = tests::bake_volumes_of(scene, glow_knobs());
-        ASSERT_EQ(volumes.glow.record.size(), 1u);
-        runtime::LightVector white = runtime::project_cubemap(
-            std::vector<formats::Rgb>(formats::cubemap_texels(8), {1, 1, 1}), 8);
-        const runtime::VolumeLight lit = runtime::relight_volumes(volumes.view(), white);
-        const runtime::LitVolumes ready = runtime::light_volumes(volumes.view(), lit);
-        double worst = 0;
-        for (const float off : {0.0f, 0.3f, 0.7f, 1.0f}) {
-            const runtime::MarchResult seen =
-                runtime::march_volumes(ready, {{-4, off, 0.1f}, {1, 0, 0}});
-            for (const float total :
-                 {seen.radiance.r + seen.transmittance.r, seen.radiance.g + seen.transmittance.g,
-                  seen.radiance.b + seen.transmittance.b}) {
-                worst = std::max(worst, std::abs(static_cast<double>(total) - 1));
-            }
-        }
-        EXPECT_LT(worst, 0.04) << "g " << g;
-    }
 }
 
 TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {

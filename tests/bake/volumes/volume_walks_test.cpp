@@ -73,17 +73,6 @@ TEST(VolumeWalks, ThinMediaScatterTwiceInProportionToTheirDensity) {
     EXPECT_NEAR(often(0.1f) / often(0.05f), 2, 0.12);
 }
 
-TEST(VolumeWalks, AbsorptionTakesFromEveryScattering) {
-    const auto often = [](float albedo) {
-        return measure(bake(tests::make_volume(tests::make_ball_grid(1, 0.2), 2, albedo, 0),
-                            coarse_knobs(64)))
-            .often;
-    };
-    const double white = often(1), half = often(0.5f);
-    EXPECT_LT(half, 0.5 * white);
-    EXPECT_GT(half, 0.2 * white);
-}
-
 TEST(VolumeWalks, AColouredVolumeIsThreeGreyOnesWithTheSameNoise) {
     const formats::Volume grey = tests::make_volume(tests::make_ball_grid(1, 0.25), 2, 0.8f, 0.3f);
     formats::Volume coloured = grey;
