@@ -24,13 +24,6 @@ formats::Volume varied_blob(float g, glm::vec3 below, glm::vec3 above) {
     return blob;
 }
 
-Knobs albedo_knobs(std::uint32_t spacing) {
-    Knobs knobs = tests::knobs_for(Quality::preview);
-    knobs.cubemap_size = 8;
-    knobs.set(kVolumeSpacing, spacing);
-    return knobs;
-}
-
 runtime::MarchResult march_white(const formats::Volumes& volumes, float off, float glow = 1) {
     const runtime::LightVector white = runtime::project_cubemap(
         std::vector<formats::Rgb>(formats::cubemap_texels(8), {1, 1, 1}), 8);
@@ -45,9 +38,11 @@ TEST(VariedAlbedo, TheSameAtAllVoxelsItIsTheNumber) {
     constexpr float kForward = 0.85f;
     formats::Volume plain = tests::make_volume(tests::make_blob(0.5, 0.125), 3, 0, kForward);
     plain.albedo = {kRed.x, kRed.y, kRed.z};
-    const formats::Volumes number = tests::bake_volumes_of(tests::scene_of(plain), albedo_knobs(4));
+    const formats::Volumes number =
+        tests::bake_volumes_of(tests::scene_of(plain), tests::small_knobs(Quality::preview, 4));
     const formats::Volumes grid =
-        tests::bake_volumes_of(tests::scene_of(varied_blob(kForward, kRed, kRed)), albedo_knobs(4));
+        tests::bake_volumes_of(tests::scene_of(varied_blob(kForward, kRed, kRed)),
+                               tests::small_knobs(Quality::preview, 4));
     for (const float off : {0.0f, 0.4f, -0.8f}) {
         const runtime::MarchResult a = march_white(number, off), b = march_white(grid, off);
         EXPECT_NEAR(a.transmittance.r, b.transmittance.r, 1e-4f);
@@ -67,7 +62,8 @@ Unseen look_at_equilibrium(formats::Volume blob, bool is_split) {
     if (is_split) {
         scene.volumes.push_back(*formats::split_absorption(scene.volumes[0]));
     }
-    const formats::Volumes volumes = tests::bake_volumes_of(scene, albedo_knobs(4));
+    const formats::Volumes volumes =
+        tests::bake_volumes_of(scene, tests::small_knobs(Quality::preview, 4));
     Unseen unseen;
     for (int i = -8; i <= 8; ++i) {
         const runtime::MarchResult seen = march_white(volumes, 0.1f * static_cast<float>(i));

@@ -23,13 +23,6 @@ formats::Scene glowing_blob(glm::vec3 sigma_t, glm::vec3 albedo, float g, glm::v
     return tests::scene_of(std::move(blob));
 }
 
-Knobs glow_knobs() {
-    Knobs knobs = tests::knobs_for(Quality::preview);
-    knobs.cubemap_size = 8;
-    knobs.set(kVolumeSpacing, 4);
-    return knobs;
-}
-
 // At the middle of a blob that absorbs, light L_e (1 - exp(-depth)) comes from all directions.
 TEST(GlowWalks, InTheMiddleOfABlobTheyFindWhatItsHalvesAbsorb) {
     const glm::vec3 sigma_t(0.5f, 2, 6), own(3, 2, 1);
@@ -67,7 +60,8 @@ TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
     for (float& value : volume.density.value) {
         value = value < 0.9f ? 0 : value;
     }
-    const formats::Volumes volumes = tests::bake_volumes_of(scene, glow_knobs());
+    const formats::Volumes volumes =
+        tests::bake_volumes_of(scene, tests::small_knobs(Quality::preview, 4));
     const formats::VolumeRecord& record = volumes.records.at(0);
     ASSERT_EQ(volumes.glow.record.size(), 1u);
     const formats::GlowRecord& glow = volumes.glow.record[0];
@@ -90,8 +84,7 @@ TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
 }
 
 TEST(PlanGlow, LightUnderTheBudgetIsLeftOutAndWhatIsLeftOutIsDarker) {
-    Knobs knobs = glow_knobs();
-    knobs.set(kVolumeSpacing, 8);
+    const Knobs knobs = tests::small_knobs(Quality::preview, 8);
     for (const float own : {2e-4f, 1.0f}) {
         formats::Scene scene = glowing_blob(glm::vec3(0.3f), glm::vec3(0.5f), 0, glm::vec3(own));
         const VolumePlan plan = plan_volumes(scene, knobs);
@@ -148,8 +141,7 @@ SeenGlow look_at_glow(const formats::Scene& scene, Knobs knobs) {
 // 1 - e^-tau. From below: what is left out is darker than the bound, which is below the budget.
 // From above: what is kept is there, and no 60th of the bound.
 TEST(PlanGlow, ScatteredLightOfItsOwnIsLeftOutByABoundThatHoldsAndIsNotVain) {
-    Knobs knobs = glow_knobs();
-    knobs.set(kVolumeSpacing, 8);
+    const Knobs knobs = tests::small_knobs(Quality::preview, 8);
     for (const float depth : {0.05f, 0.3f, 2.0f}) {
         const auto make = [&](float own) {
             formats::Volume ball =

@@ -44,10 +44,8 @@ formats::Volumes bake(const formats::Volume& volume, const Knobs& knobs) {
 }
 
 Knobs coarse_knobs(std::uint32_t walks) {
-    Knobs knobs = tests::knobs_for(Quality::preview);
-    knobs.cubemap_size = 8;
+    Knobs knobs = tests::small_knobs(Quality::preview, 2);
     knobs.set(kVolumeWalks, walks);
-    knobs.set(kVolumeSpacing, 2);
     return knobs;
 }
 
