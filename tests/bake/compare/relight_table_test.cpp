@@ -58,15 +58,6 @@ TEST(RelightTable, MalformedLinesAreNamed) {
     }
 }
 
-TEST(RelightTable, EveryPrefixIsReadOrRefused) {
-    const std::string whole = "primitive,vertex,r,g,b\n0,0,1.5,2.5,3.5\n1,0,1e-3,2,3\n";
-    for (std::size_t size = 0; size < whole.size(); ++size) {
-        const std::string part = whole.substr(0, size);
-        const auto read = decode_relight_csv(bytes_of(part), "t");
-        EXPECT_TRUE(read || !read.error().diagnostics.empty());
-    }
-}
-
 TEST(RelightTable, PointCloudHoldsPositionsAndRadiancesInOrder) {
     const TemporaryFolder folder;
     const std::vector<formats::Vec3> positions{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}};

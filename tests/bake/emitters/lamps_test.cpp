@@ -106,20 +106,6 @@ TEST(LampSources, PowerIsPiAreaRadianceOfASide) {
     EXPECT_NEAR(sources.triangles[0].power().x, std::numbers::pi, 1e-12);
 }
 
-TEST(LampSources, TexturedTrianglesAreCutIntoPartsOfTheirOwnRadiance) {
-    formats::Scene scene = glowing_quads({"a"});
-    scene.images.push_back({2, 1, {0, 0, 0, 255, 255, 255, 255, 255}});
-    scene.materials[0].emission_image = 0;
-    scene.primitives[0].texcoord = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
-    const LampSources sources = make_lamp_sources(scene, list_lamps(scene)[0]);
-    EXPECT_GT(sources.triangles.size(), 8u);  // black parts are left out
-    double power = 0;
-    for (const GlowingTriangle& triangle : sources.triangles) {
-        power += triangle.power().x;
-    }
-    EXPECT_NEAR(power, 0.5 * std::numbers::pi, 0.01);
-}
-
 TEST(LampSources, PowerOfLights) {
     formats::Scene scene = glowing_quads({"a"});
     LampSources sources = make_lamp_sources(scene, list_lamps(scene)[0]);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "bake/emitters/particle_start.h"
@@ -142,39 +141,6 @@ TEST(ParticleRadiosity, CeilingLitByBouncesHasCoarserElementsThanTheFloor) {
         return count;
     };
     EXPECT_GE(groups(4), 2 * groups(5));
-}
-
-// A closed box of exitance 1 and albedo 1/2: B = 1 / (1 - 1/2) and irradiance 2 everywhere. Each
-// particle of power 6 / N arrives at a face 1/3 times on average, with a variance of nearly that: a
-// mean errs by at most sqrt(3 / N) = 0.12 %: first flights and bounces are spread evenly.
-TEST(ParticleRadiosity, FacesOfAFurnaceBoxAreEvenWithinTwoThousandths) {
-    formats::Scene scene;
-    tests::add_surface(scene, tests::make_cube(1, true), 0.5f, std::numbers::inv_pi_v<float>);
-    const ElementLayout layout(scene, 4);
-    const Power power = trace(scene, layout, {2000000, 0, 0, 1}, 2);
-    const std::size_t face = layout.size() / 6;
-    for (std::size_t f = 0; f < 6; ++f) {
-        EXPECT_NEAR(sum_of(power, f * face, (f + 1) * face) / 4, 2, 0.002 * 2) << f;
-    }
-}
-
-// Two walls and a floor of a corner, one wall glows: form factor of perpendicular unit squares
-// with a common edge.
-TEST(ParticleRadiosity, CornerOfARoomReceivesItsFormFactor) {
-    constexpr double kPerpendicular = 0.20004378;
-    formats::Scene scene;
-    const float glow = std::numbers::inv_pi_v<float>;
-    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}), 0, glow);  // x = 0
-    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 0);        // z = 0
-    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}), 0);        // y = 0
-    const std::uint32_t particles = 100000;
-    const ElementLayout layout(scene, 0.01);
-    const Power power = trace(scene, layout, {particles});
-    const std::size_t third = layout.size() / 3;
-    for (const std::size_t wall : {1, 2}) {
-        EXPECT_NEAR(sum_of(power, wall * third, (wall + 1) * third), kPerpendicular,
-                    3 * std::sqrt(0.2 * 0.8 / particles));
-    }
 }
 
 formats::Scene closed_room(formats::Light light) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "tests/bake/emitters/lamp_scenes.h"
 #include "tests/support/volumes.h"
@@ -123,20 +122,6 @@ TEST(StraightLight, SmokeBetweenDimsLampsByBeersLaw) {
             }
         }
     }
-}
-
-TEST(StraightLight, SpotFallsOffBetweenItsCones) {
-    Light spot{
-        .type = Light::Type::spot, .name = "", .intensity = {4, 4, 4}, .position = {0, 2, 0}};
-    spot.inner_cone = 0.2f;
-    spot.outer_cone = 0.6f;
-    const formats::Scene scene = lit_by(spot);
-    EXPECT_NEAR(receive(scene, {{0, 1e-4f, 0}, {0, 1, 0}}).x, 1, 1e-3);
-    const double angle = 0.4, x = 2 * std::tan(angle);
-    const double share = (std::cos(angle) - std::cos(0.6)) / (std::cos(0.2) - std::cos(0.6));
-    EXPECT_NEAR(receive(scene, {{float(x), 1e-4f, 0}, {0, 1, 0}}).x,
-                share * share * std::pow(std::cos(angle), 3), 1e-3);
-    EXPECT_EQ(receive(scene, {{2, 1e-4f, 0}, {0, 1, 0}}).x, 0);
 }
 
 TEST(StraightLight, DirectionalLightGivesItsLuxTimesTheCosine) {

@@ -63,15 +63,6 @@ TEST(ReceiverError, IsTheShareOfDroppedSquares) {
                 std::sqrt((all - stored) / all), 1e-5);
 }
 
-TEST(ReceiverError, RoundingAloneIsThatOfTheCodes) {
-    Encoded fine = encode_row(random_row(4, 3, 2), 4, 3, kAllCoefficients);
-    EXPECT_LT(receiver_error(fine.row(), TermsSeen::apart, fine.rows), 1e-4);
-    Encoded coarse = encode_row(random_row(4, 3, 2), 4, 3, kAllCoefficients, 8);
-    const float error = receiver_error(coarse.row(), TermsSeen::apart, coarse.rows);
-    EXPECT_GT(error, 1e-3);
-    EXPECT_LT(error, 2e-2);
-}
-
 TEST(ReceiverError, IsZeroWhereNothingIsLostOrThere) {
     std::vector<float> one(formats::cubemap_texels(kSide), 0.0f);
     Encoded dark = encode_row(one, 1, 1, 7);

@@ -53,12 +53,6 @@ TEST(BuiltinEnvironment, WhiteLightsEveryPlaneWithPi) {
     }
 }
 
-TEST(BuiltinEnvironment, BlackIsNoLight) {
-    const Environment black = make("black");
-    EXPECT_EQ(formats::sample_map(black, {0, 1, 0}), (formats::Rgb{0, 0, 0}));
-    EXPECT_TRUE(black.discs.empty());
-}
-
 TEST(BuiltinEnvironment, SunHasIrradiancePiAndHalfADegree) {
     for (const char* name : {"sun:0,90", "sun:40,30", "sun:-170,2"}) {
         const Environment sun = make(name);

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -103,29 +102,6 @@ TEST_F(ExampleFiles, NameTheImageOfAnObjectAndHoldItsTextureCoordinates) {
     const auto& accessor = document["accessors"][attributes["TEXCOORD_0"].get<std::size_t>()];
     EXPECT_EQ(accessor["type"], "VEC2");
     EXPECT_EQ(accessor["count"], 3);
-}
-
-TEST_F(ExampleFiles, HoldPositionsAsLittleEndianFloatsWithTheirBounds) {
-    ASSERT_TRUE(write_gltf(folder_, "small", small_scene()));
-    const std::string bytes = contents(folder_ / "small.bin");
-    const auto document = nlohmann::json::parse(contents(folder_ / "small.gltf"));
-    const auto& attributes = document["meshes"][1]["primitives"][0]["attributes"];
-    const auto& accessor = document["accessors"][attributes["POSITION"].get<std::size_t>()];
-    const auto& view = document["bufferViews"][accessor["bufferView"].get<std::size_t>()];
-    const std::size_t offset = view["byteOffset"].get<std::size_t>() + 12;  // the second vertex
-    const auto coordinate = [&](std::size_t axis) {
-        std::uint32_t word = 0;
-        for (std::size_t i = 0; i < 4; ++i) {
-            word |= std::uint32_t{static_cast<unsigned char>(bytes[offset + 4 * axis + i])}
-                    << (8 * i);
-        }
-        return std::bit_cast<float>(word);
-    };
-    EXPECT_EQ(coordinate(0), 1.0f);
-    EXPECT_EQ(coordinate(1), 0.0f);
-    EXPECT_EQ(coordinate(2), 0.25f);
-    EXPECT_EQ(accessor["min"], nlohmann::json({0.0, 0.0, -1.0}));
-    EXPECT_EQ(accessor["max"], nlohmann::json({1.0, 2.0, 0.25}));
 }
 
 TEST_F(ExampleFiles, SayOutrightWhatIsDiffuseAndWhatIsGlossy) {

@@ -173,27 +173,6 @@ TEST_P(ExampleFigure, RestsOnTheFloor) {
     EXPECT_NEAR(high->y, height.at(GetParam()), 0.05 * height.at(GetParam()));
 }
 
-TEST_P(ExampleFigure, StandsInTheMiddleOfAFloorThatFacesUp) {
-    const TriangleMesh& floor = floor_of(GetParam());
-    for (const glm::dvec3& p : floor.position) {
-        ASSERT_EQ(p.y, 0.0);
-    }
-    for (const Triangle& t : floor.triangles) {
-        ASSERT_NEAR(face_normal(floor, t).y, 1.0, 1e-12);
-    }
-    for (const glm::dvec3& n : floor.normal) {
-        ASSERT_EQ(n, glm::dvec3(0.0, 1.0, 0.0));
-    }
-    const bool is_small = GetParam() == std::string("glossy");
-    EXPECT_THAT(floor.position.size(), testing::AllOf(testing::Ge(is_small ? 2000u : 10000u),
-                                                      testing::Le(is_small ? 5000u : 17000u)));
-    EXPECT_EQ(coinciding_vertices(floor), 0u);
-    // Right-angled, but for the few that are snapped to the statue's foot.
-    EXPECT_GT(smallest_angles(floor).front(), 4.0);
-    const std::vector<double> angles = smallest_angles(floor);
-    EXPECT_GT(angles[angles.size() / 50], 44.9);
-}
-
 TEST_P(ExampleFigure, StandsOnAFloorWithoutHolesOrHangingCorners) {
     const TriangleMesh& floor = floor_of(GetParam());
     const auto edges = directed_edges(floor);

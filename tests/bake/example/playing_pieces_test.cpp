@@ -51,38 +51,5 @@ TEST(PlayingPieces, StandInSquaresOfTheirOwn) {
     EXPECT_EQ(squares.size(), 7u);
 }
 
-TEST(PlayingPieces, TheBoardsPictureIsChequeredAndCoversIt) {
-    const TriangleMesh board = make_board();
-    const auto coordinates = board_coordinates(board);
-    ASSERT_EQ(coordinates.size(), board.position.size());
-    const formats::Image8 picture = paint_board();
-    ASSERT_EQ(picture.rgba.size(), 4 * std::size_t{picture.width} * picture.height);
-    const auto red_at = [&](double x, double z) {  // [squares]
-        double sum = 0;
-        for (int i = 0; i < 100; ++i) {
-            const auto texel = [](double squares, int step, std::uint32_t side) {
-                const double mm = kSquareSide * (squares + 0.1 + 0.08 * step);
-                return static_cast<std::size_t>((0.5 + mm / kBoardSide) * side);
-            };
-            sum += picture.rgba[4 * (texel(z, i / 10, picture.height) * picture.width +
-                                     texel(x, i % 10, picture.width))];
-        }
-        return sum / 100;
-    };
-    for (int j = -4; j < 4; ++j) {
-        for (int i = -4; i < 4; ++i) {
-            EXPECT_EQ(red_at(i, j) > 140, (i + j + 8) % 2 == 0) << i << " " << j;
-        }
-    }
-    for (std::size_t v = 0; v < coordinates.size(); ++v) {
-        EXPECT_LT(std::abs(coordinates[v].x - 0.5), 0.5 + 1e-9);
-        EXPECT_LT(std::abs(coordinates[v].y - 0.5), 0.5 + 1e-9);
-        if (board.position[v].y == 0) {
-            EXPECT_NEAR(coordinates[v].x - 0.5, board.position[v].x / kBoardSide, 1e-12);
-            EXPECT_NEAR(coordinates[v].y - 0.5, board.position[v].z / kBoardSide, 1e-12);
-        }
-    }
-}
-
 }  // namespace
 }  // namespace opaline::bake

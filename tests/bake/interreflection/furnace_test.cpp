@@ -72,45 +72,5 @@ TEST(BounceFurnace, RadianceOfAClosedBoxOfThinWallsIsEvenInsideAndOutside) {
     }
 }
 
-// An integrating sphere: from any place of its wall the hole has the same form factor f, its share
-// of the sphere, so that under an even sky L = rho (f + (1 - f) L). Three fifths of the light are
-// bounced. Vertices stand apart from the facets that receive light, and the cube map resolves the
-// hole's edge coarsely: the bounds are for that.
-TEST(BounceFurnace, TheWallOfAnIntegratingSphereIsEven) {
-    formats::Primitive wall = tests::make_sphere(3);
-    for (glm::vec3& n : wall.normal) {
-        n = -n;
-    }
-    std::vector<std::uint32_t> kept;
-    double all = 0, hole = 0;
-    for (std::size_t t = 0; t < wall.index.size(); t += 3) {
-        const glm::vec3 a = wall.position[wall.index[t]], b = wall.position[wall.index[t + 1]],
-                        c = wall.position[wall.index[t + 2]];
-        const double area = static_cast<double>(glm::length(glm::cross(b - a, c - a)));
-        all += area;
-        if (a.y + b.y + c.y > 3 * 0.5f) {
-            hole += area;
-        } else {
-            kept.insert(kept.end(), {wall.index[t], wall.index[t + 2], wall.index[t + 1]});
-        }
-    }
-    wall.index = kept;
-    formats::Scene sphere = tests::make_scene({wall});
-    sphere.materials[0].base_color = {0.8f, 0.8f, 0.8f};
-    const BakeResult baked =
-        tests::bake_scene(sphere, furnace_options({"direct", "interreflection"}));
-    const double f = hole / all;
-    std::vector<formats::Rgb> radiance;
-    const auto of_all = tests::relight(baked.asset.view(), "white");
-    for (std::size_t v = 0; v < of_all.size(); ++v) {
-        if (wall.position[v].y < 0.4f) {
-            radiance.push_back(of_all[v]);
-        }
-    }
-    const Deviation d = deviation_from(0.8 * f / (1 - 0.8 * (1 - f)), radiance);
-    EXPECT_LT(d.rms, 0.03);
-    EXPECT_LT(std::abs(d.mean), 0.01);
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -58,14 +58,6 @@ struct BlackMedium {
     BounceTree tree{{}, 1, kTexels};
 };
 
-// A plate that a point looks at from near by mirrors the whole even sky: F_ext of it, 0.0918 for an
-// index of 1.5.
-TEST(MirroredRays, ABlackPlateMirrorsTheShareOfAnEvenSkyThatIsItsMeanReflectance) {
-    const BlackMedium plate({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0})});
-    const double e = plate.irradiance({{0, 1e-3f, 0}, {0, -1, 0}}, [](glm::vec3) { return true; });
-    EXPECT_NEAR(e / std::numbers::pi, 0.0918, 0.001);
-}
-
 // A point on a floor before a wall that faces +x. What it receives of the wall stands at +x, and is
 //     int F(w.x) w.y dw
 // over the quarter of the sphere above the floor and before the wall: more than F_ext of the half

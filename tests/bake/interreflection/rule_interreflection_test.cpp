@@ -41,23 +41,6 @@ TEST(RuleInterreflection, BlackSurfacesReflectNothingToOthers) {
     EXPECT_FALSE(is_on(tests::make_plates(1, 0.02f, 1)));
 }
 
-// A lone ball: rays are looked for and none is found, so that forcing changes no bit.
-TEST(RuleInterreflection, BoundOfALoneBallIsProvenByForcingIt) {
-    const formats::Scene ball = tests::make_scene({tests::make_sphere(2)});
-    bake::BakeOptions options = tests::bounce_options(kRuleEffects);
-    const BakeResult off = tests::bake_scene(ball, options);
-    const PlanEntry& entry = *find_entry(off.plan, "interreflection", 0);
-    EXPECT_LT(entry.bound, 1.0 / 512);
-    options.simulate_all = true;
-    const BakeResult on = tests::bake_scene(ball, options);
-    ASSERT_TRUE(find_entry(on.plan, "interreflection", 0)->forced);
-    const auto a = tests::relight(off.asset.view(), "white");
-    const auto b = tests::relight(on.asset.view(), "white");
-    for (std::size_t v = 0; v < a.size(); ++v) {
-        EXPECT_NEAR(a[v].g, b[v].g, entry.bound + 1e-3);
-    }
-}
-
 // Where it is on, what it adds to the first plate is below its bound: o rho rho_max.
 void expect_less_than_bound(const formats::Scene& scene, std::vector<std::string> effects) {
     const auto without = tests::bake_scene(scene, tests::bounce_options(effects));

@@ -26,15 +26,6 @@ double difference_above(std::span<const double> a, std::span<const double> b) {
     return std::sqrt(square / all);
 }
 
-// Squares of 4 mm, half of them black, on a metre: cells of scatterers are 3 to 5 cm wide. Rays
-// are the same in all three, so all that differs is the texture.
-TEST(TexturedBounces, AFineCheckerSendsWhatItsMeanSends) {
-    const tests::BouncedIn checker(tests::make_textured_plates(tests::make_checker(256), 1));
-    const std::vector<double> mean = tests::BouncedIn(plates_of_mean()).light(false);
-    EXPECT_LT(difference_above(checker.light(true), mean), 1e-3);
-    EXPECT_GT(difference_above(checker.light(false), mean), 0.03) << "as points have it";
-}
-
 // Halves of black and white: what cells do not blur stays.
 TEST(TexturedBounces, ACoarseTextureIsSeenWhereItIs) {
     formats::Image8 halves{2, 1, {0, 0, 0, 255, 255, 255, 255, 255}};

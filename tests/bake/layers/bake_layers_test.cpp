@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <cmath>
-#include <numbers>
 
 #include "formats/opal/check_clouds.h"
 #include "tests/bake/layers/layer_support.h"
@@ -29,17 +28,6 @@ TEST(BakeLayers, EveryTableStandsWhereItsCountsSay) {
     }
     EXPECT_EQ(formats::find_clouds_fault(clouds.view()).what, "");
     EXPECT_EQ(formats::find_cloud_value_fault(clouds.view()).what, "");
-}
-
-TEST(BakeLayers, ThicknessReturnsFromItsCodes) {
-    formats::Scene scene = layer_scene();
-    scene.layers[0].thickness = {0, 37.5f, 120, 80};
-    const formats::Clouds clouds = bake_layer(scene, least_layer_knobs()).clouds;
-    EXPECT_EQ(clouds.records[0].highest, 120);
-    for (std::size_t i = 0; i < 4; ++i) {
-        EXPECT_NEAR(clouds.thickness[i] * 120 / 65535.0,
-                    static_cast<double>(scene.layers[0].thickness[i]), 0.001);
-    }
 }
 
 TEST(BakeLayers, FramesFollowEachOtherInOneScale) {

@@ -103,12 +103,6 @@ TEST(LayerError, IntervalHoldsTheMeanOfOtherDraws) {
     EXPECT_GE(std::ranges::count_if(reports, holds), kSeeds - 1);
 }
 
-TEST(LayerError, IsTheSameForTheSameSeed) {
-    const LayerErrorReport again = check_of(checked_draft().baked);
-    EXPECT_EQ(again.rms_relative, checked_draft().error.rms_relative);
-    EXPECT_EQ(again.radiances_checked, checked_draft().error.radiances_checked);
-}
-
 TEST(LayerError, StopsWhenCancelled) {
     const std::atomic<bool> cancel = true;
     Context context;
@@ -127,16 +121,6 @@ TEST(StoredTables, ScatteringAngleIsThatOfTheDirections) {
     EXPECT_NEAR(scattering_angle(0.5, 0.5, 0, false), pi / 3, 1e-12);  // a mirror
     EXPECT_NEAR(scattering_angle(0.5, 0.5, pi, false), pi, 1e-7);      // back to the light
     EXPECT_NEAR(scattering_angle(0.5, 0.5, pi, true), 2 * pi / 3, 1e-12);
-}
-
-TEST(StoredTables, ComeBackAsTheyWereMade) {
-    const BakedLayers& baked = checked_draft().baked;
-    const StoredTables tables = read_tables(baked.clouds.view(), baked.clouds.records[0], 1);
-    EXPECT_EQ(tables.flux.t_ms.size(), baked.clouds.records[0].flux_count());
-    EXPECT_EQ(tables.radiance.reflected.size(), baked.clouds.records[0].radiance_count());
-    EXPECT_NEAR(eval_texture(tables.phase, 1.0), eval_table(baked.droplets[0][1].optics.phase, 1.0),
-                0.02 * eval_texture(tables.phase, 1.0));
-    EXPECT_NEAR(eval_mean_transmittance(tables.flux, 0), 1, 1e-6);
 }
 
 }  // namespace

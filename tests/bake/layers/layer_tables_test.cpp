@@ -89,30 +89,6 @@ TEST(LayerTables, RadianceIsThatOfTheFormulaInTheFormat) {
     }
 }
 
-// Independent of the table: the solver at one node, all orders but the first.
-TEST(LayerTables, RadianceIsThatOfTheSolver) {
-    const std::size_t depth = 8, band = 2;
-    const formats::LayerRecord& record = baked().record();
-    const std::size_t n = record.radiance_cosines, view = n / 2, light = n - 3;
-    SlabRadianceRequest request;
-    request.optical_depth = table_depth(depth, record.radiance_depths);
-    request.lights = {table_cosine(light, n)};
-    request.view = {table_cosine(view, n)};
-    request.streams = 32;
-    request.modes = record.radiance_modes;
-    request.first_order = 2;
-    const SlabRadiance truth =
-        solve_slab_radiance(rest_medium(baked().layers.droplets[0][band].split, 32), request)
-            .front();
-    const formats::LayerTables stored = baked().tables(band);
-    for (const double azimuth : {0.0, 1.0, 3.0}) {
-        const double expected =
-            request.lights[0] / pi * eval_slab_radiance(truth, truth.transmitted, 0, 0, azimuth);
-        EXPECT_NEAR(stated_radiance(stored.transmitted, depth, view, light, azimuth), expected,
-                    0.01 * expected);
-    }
-}
-
 TEST(LayerTables, SharesOfTheFluxAreThoseOfTheSolver) {
     const formats::LayerRecord& record = baked().record();
     const std::size_t depth = record.flux_depths / 2, cosine = record.flux_cosines / 2;
@@ -131,17 +107,6 @@ TEST(LayerTables, SharesOfTheFluxAreThoseOfTheSolver) {
         EXPECT_NEAR(stored.t_ms[at], slab.total.transmittance[0], 1e-3);
         EXPECT_NEAR(stored.mean_t[depth], slab.total.mean_transmittance, 1e-3);
     }
-}
-
-TEST(LayerTables, LayerOfNoDepthLetsAllLightThrough) {
-    const formats::LayerRecord& record = baked().record();
-    const formats::LayerTables stored = baked().tables(0);
-    for (std::size_t j = 0; j < record.flux_cosines; ++j) {
-        EXPECT_EQ(stored.t1[j], 0);
-        EXPECT_EQ(stored.r1[j], 0);
-        EXPECT_EQ(stored.t_ms[j], 1);
-    }
-    EXPECT_EQ(stored.mean_t[0], 1);
 }
 
 // As a reader interpolates it: in the coordinate of the texture.
@@ -184,12 +149,6 @@ TEST(LayerTables, GlowHoldsWhatThePeakScatters) {
         }
         EXPECT_NEAR(sum / -std::expm1(-events), 1, 0.01) << events;
     }
-}
-
-TEST(LayerTables, NoPeakHasNoGlow) {
-    PeakSplit split = baked().layers.droplets[0][0].split;
-    split.angle = 0;
-    EXPECT_TRUE(tabulate_glow(split, 16, 8).empty());
 }
 
 }  // namespace

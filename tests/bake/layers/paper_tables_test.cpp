@@ -93,13 +93,6 @@ TEST(PaperTables, FluxesAreThoseOfTheAppendixAtItsAngles) {
     EXPECT_TRUE(std::ranges::is_sorted(table.mean_t, std::greater<>{}));
 }
 
-// T_2a and T_2b of 60 m under light at the normal: corrected as bake/slab has it, 0.1814 and
-// 3.4e-4 for x = 1.59, r = .0547.
-TEST(PaperTables, SecondOrderOfTheColumnIsTheCorrectedOne) {
-    const OrderShares shares = column_orders(paper2006_at(0), 60);
-    EXPECT_NEAR(shares.transmitted[2], 0.1814 + 3.4e-4, 1e-4);
-}
-
 // Hemispheric totals of order 2: of the printed form without kappa^2; the rest is R_3+
 // and T_3+ of appendix A, as the profile 1 / (2 mu) has the energy that it is given.
 TEST(PaperTables, RadianceHasThePrintedEnergies) {
@@ -128,14 +121,6 @@ TEST(PaperTables, RadianceHasThePrintedEnergies) {
                 << c.thickness << (below ? " below" : " above");
         }
     }
-}
-
-// A layer of no depth scatters twice as much as once, in the paper.
-TEST(PaperTables, TwiceGrowsLikeTheDepth) {
-    const RadianceTable table = make_paper_radiance(paper_bands()[1].split, {32, 8, 1});
-    const double thin = eval_radiance_table(table, 1e-4, 0.7, 0.6, 0, false);
-    EXPECT_GT(thin, 0);
-    EXPECT_NEAR(eval_radiance_table(table, 2e-4, 0.7, 0.6, 0, false) / thin, 2, 0.01);
 }
 
 // Convolutions multiply the mean cosine; u = 12 (j / (events - 1))^2 = n P_f.
@@ -209,12 +194,6 @@ TEST(PaperTables, BakeIsSoundSaysSoAndStatesTheErrorOfTheForms) {
     EXPECT_GT(error.tables, 0.15);
     EXPECT_LT(error.tables, 3);
     EXPECT_NE(error.reference.find("printed forms"), std::string::npos);
-}
-
-TEST(PaperTables, FidelityOfADefaultLayerIsPhysical) {
-    const BakedLayers baked = bake_layer(layer_scene(), least_layer_knobs());
-    EXPECT_FALSE(baked.clouds.records[0].is_paper());
-    EXPECT_EQ(baked.droplets[0][1].kappa, baked.droplets[0][1].mie_kappa);
 }
 
 }  // namespace

@@ -50,12 +50,6 @@ TEST(SummariseChecks, StatesBothPlacesAndTheWhole) {
     EXPECT_EQ(worst.rays, 77u);
 }
 
-TEST(SummariseChecks, NothingCheckedIsNoError) {
-    const ErrorReport report = summarise_checks({}, kLights, 0);
-    EXPECT_EQ(report.rms_relative, 0);
-    EXPECT_EQ(report.receivers_checked, 0u);
-}
-
 class MeasuredErrorWarnings : public ::testing::Test {
   protected:
     MeasuredErrorWarnings() {

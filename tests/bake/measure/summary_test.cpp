@@ -1,6 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -77,22 +76,6 @@ TEST(SummaryOfChecks, NothingCheckedOrNothingToErrByIsZero) {
     EXPECT_EQ(report.max_relative, 0);
     EXPECT_EQ(report.ci95[1], 0);
     EXPECT_EQ(report.receivers_checked, 1u);
-}
-
-// The truth's own noise, of independent estimates: it cancels in the mean of products, and would
-// count in a mean of squares (0.1 here, against an error of 0.01).
-TEST(SummaryOfChecks, NoiseOfTheTruthIsNotCountedAsError) {
-    EffectCheck check = make_check("multiple", "points", {});
-    for (std::uint64_t i = 0; i < 4096; ++i) {
-        const auto u = random_uniform(7, RandomStage::bootstrap, i);
-        const auto noise = [&](std::size_t k) { return u[k] < 0.5f ? 0.1 : -0.1; };
-        check.pairs.push_back({{0.01 + noise(0), 0.01 + noise(1)}, 1});
-    }
-    const ErrorReport report =
-        summarise_checks(std::vector{check}, std::vector<std::string>{"white"}, 0);
-    EXPECT_LT(report.rms_relative, 0.03);
-    EXPECT_LE(report.ci95[0], 0.01);
-    EXPECT_GE(report.ci95[1], 0.01);
 }
 
 TEST(BoundError, ReceiversThatErrAlikeLeaveNoIntervalAndOthersDo) {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bake/scattering/phase.h"
-#include "bake/scattering/phase_series.h"
 #include "tests/bake/mie/mie_support.h"
 
 namespace opaline::bake {
@@ -79,17 +78,6 @@ TEST(AngularTable, ThinTableErrsByNoMoreThanItsTolerance) {
             << table.angle[i];
     }
     EXPECT_EQ(thin_table(table, 0).angle.size(), table.angle.size());
-}
-
-TEST(AngularTable, CutsAddUpToTheWhole) {
-    const AngularTable table = henyey_table(0.8, 0.3);
-    for (const double angle : {0.01, 0.3, 1.0, 3.0}) {
-        const AngularTable near = cut_table(table, 0, angle), far = cut_table(table, angle, pi);
-        EXPECT_NEAR(integrate_table(near) + integrate_table(far), integrate_table(table), 1e-14);
-        EXPECT_NEAR(integrate_table(near), integrate_within(table, angle), 1e-14);
-        EXPECT_EQ(eval_table(near, angle + 1e-9), 0);
-        EXPECT_EQ(eval_table(far, angle - 1e-9), 0);
-    }
 }
 
 // cos(a) - cos(b) of small angles has no digits left in the difference of rounded cosines.

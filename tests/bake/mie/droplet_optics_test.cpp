@@ -55,19 +55,6 @@ TEST(DropletOptics, NarrowDistributionIsOneSphere) {
     }
 }
 
-// Droplets much smaller than the wavelength: 3 / (16 pi) (1 + cos^2).
-TEST(DropletOptics, TinyDropletsScatterAsRayleighSays) {
-    const DropletDistribution tiny{1e8, 1e-10, 2};
-    const DropletOptics optics = average(tiny, 600e-9, 1.333);
-    for (const double angle : {0.0, 1.0, pi / 2, 2.5, pi}) {
-        const double cosine = std::cos(angle);
-        EXPECT_NEAR(eval_table(optics.phase, angle), 3 / (16 * pi) * (1 + cosine * cosine),
-                    3e-4 / (4 * pi))
-            << angle;
-    }
-    EXPECT_NEAR(optics.g, 0, 1e-3);
-}
-
 TEST(DropletOptics, SumsHaveTheSameBitsForAnyNumberOfThreads) {
     const auto run = [](unsigned threads) {
         Context context;

@@ -92,71 +92,6 @@ TEST(PaperDroplets, NumericalErrorIsReportedAndBelowHalfAPercent) {
     }
 }
 
-TEST(PaperDroplets, PhaseFunctionIntegratesTo1WithTheMeanCosineOfTheCoefficients) {
-    for (const double nm : {650.0, 550.0, 450.0}) {
-        const DropletOptics& optics = paper_optics(nm);
-        EXPECT_NEAR(integrate_table(optics.phase), 1, 1e-12) << nm;
-        EXPECT_NEAR(optics.integral_before, 1, 1e-4) << nm;
-        EXPECT_NEAR(integrate_cosine(optics.phase), optics.g, 1e-4) << nm;
-    }
-}
-
-// kappa = 3/4 Q LWC / (rho r_e) whatever the droplets; [Bouthors2006] states N0 pi r_e^2, 25 %
-// more.
-TEST(PaperDroplets, ExtinctionFollowsFromTheLiquidWater) {
-    const DropletDistribution d = paper_droplets();
-    const DropletOptics& optics = paper_optics(550);
-    const double kappa = extinction(d, optics);
-    const double efficiency = optics.c_ext / optics.c_geo;
-    EXPECT_NEAR(0.75 * efficiency * liquid_water_content(d) / (1000 * d.effective_radius) / kappa,
-                1, 1e-12);
-    const double paper = d.density * pi * d.effective_radius * d.effective_radius;
-    EXPECT_NEAR(paper / kappa, 1.25, 0.01);
-}
-
-/// The angle of the largest (sign 1) or smallest (sign -1) value between two angles [degrees].
-double extremum(const AngularTable& phase, double from, double to, int sign) {
-    double best = from;
-    for (std::size_t i = 0; i < phase.angle.size(); ++i) {
-        const double angle = phase.angle[i] / kDegree;
-        if (angle > from && angle < to &&
-            sign * phase.value[i] > sign * eval_table(phase, best * kDegree)) {
-            best = angle;
-        }
-    }
-    return best;
-}
-
-TEST(PaperDroplets, FogbowStandsAt142DegreesAndTheDarkRingAt104) {
-    struct Bow {
-        double nm, angle, value, least;
-    };
-    for (const Bow bow : {Bow{650, 142.2, 0.280, 0.0281},
-                          {550, 142.0, 0.295, 0.0260},
-                          {450, 142.1, 0.316, 0.0243}}) {
-        const AngularTable& phase = paper_optics(bow.nm).phase;
-        const double bright = extremum(phase, 130, 155, 1), dark = extremum(phase, 90, 120, -1);
-        EXPECT_NEAR(bright, bow.angle, 0.5) << bow.nm;
-        EXPECT_NEAR(kSphere * eval_table(phase, bright * kDegree), bow.value, 0.03 * bow.value);
-        EXPECT_NEAR(dark, 104, 3) << bow.nm;
-        EXPECT_NEAR(kSphere * eval_table(phase, dark * kDegree), bow.least, 0.03 * bow.least);
-    }
-}
-
-TEST(PaperDroplets, GloryIsARingThatShrinksWithTheWavelength) {
-    double last = 0;
-    for (const auto& [nm, angle] : {std::pair{650.0, 177.80}, {550.0, 178.18}, {450.0, 178.44}}) {
-        const AngularTable& phase = paper_optics(nm).phase;
-        const double ring = extremum(phase, 176.5, 178.9, 1);
-        EXPECT_NEAR(ring, angle, 0.05) << nm;
-        EXPECT_GT(ring, last);
-        last = ring;
-        // Brighter than around it, and the centre is a spot.
-        EXPECT_GT(eval_table(phase, ring * kDegree), 1.5 * eval_table(phase, 174 * kDegree));
-        EXPECT_GT(eval_table(phase, pi), eval_table(phase, ring * kDegree));
-    }
-}
-
 TEST(PaperDroplets, PeakEndsAtFiveDegreesInGreen) {
     EXPECT_NEAR(find_peak_angle(paper_optics(550).phase) / kDegree, 5, 0.1);
     const PeakSplit split = split_peak(paper_optics(550).phase, 5 * kDegree);
@@ -210,21 +145,6 @@ TEST(PaperDroplets, TextureOf256TexelsErrsByLessThan2Percent) {
         EXPECT_LT(error, last) << texels;
         last = error;
     }
-}
-
-// A few hundred rows hold the peak, the fogbow and the glory.
-TEST(PaperDroplets, RowsCrowdWhereThePhaseFunctionBends) {
-    const AngularTable& phase = paper_optics(550).phase;
-    const AngularTable thin = thin_table(phase, 0.002);
-    EXPECT_LT(thin.angle.size(), 400u);
-    const auto rows_between = [&](double from, double to) {
-        return std::count_if(thin.angle.begin(), thin.angle.end(), [&](double angle) {
-            return angle >= from * kDegree && angle < to * kDegree;
-        });
-    };
-    EXPECT_GT(rows_between(0, 5), 4 * rows_between(60, 65));
-    EXPECT_NEAR(integrate_table(thin), 1, 2e-3);
-    EXPECT_NEAR(integrate_cosine(thin), paper_optics(550).g, 2e-3);
 }
 
 }  // namespace

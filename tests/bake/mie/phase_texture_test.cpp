@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,22 +38,6 @@ TEST(PhaseTexture, IntegratesTo1AndStoresWhatItWasScaledBy) {
         EXPECT_NEAR(sum, 1, 1e-5) << texels;
         EXPECT_NEAR(texture.integral, 1, 20.0 / (texels * texels)) << texels;
     }
-}
-
-TEST(PhaseTexture, ErrorFallsWithTheSquareOfTexels) {
-    const DropletOptics& optics = tests::fine_optics();
-    const auto worst = [&](unsigned texels) {
-        const PhaseTexture texture = make_phase_texture(optics.phase, texels);
-        double error = 0;
-        for (std::size_t i = 0; i < optics.phase.angle.size(); ++i) {
-            error = std::max(
-                error,
-                std::abs(eval_texture(texture, optics.phase.angle[i]) / optics.phase.value[i] - 1));
-        }
-        return error;
-    };
-    EXPECT_LT(worst(64), 0.01);
-    EXPECT_LT(worst(256), worst(64) / 6);
 }
 
 // From 1e4 per steradian down to 1e-3: single precision holds the logarithm of both.

@@ -96,35 +96,6 @@ double gather(const ClusterTree& tree, const MediumProfile& profile, glm::vec3 x
     return static_cast<double>(rgbx[0]);
 }
 
-// The same nodes are accepted, with the same weights and sums, bit for bit; with a near part
-// (samples far apart) and without.
-TEST(GatherMultiple, OneBandIsEachOfThreeEqualBands) {
-    const auto profile = classic_profile(20, 1, 1.3);
-    const Samples set = make_sphere(1, 5000, [](glm::dvec3 n) { return 1 + n.x; });
-    const ClusterTree tree = set.tree();
-    for (const bool is_sparse : {false, true}) {
-        const double spacing = (is_sparse ? 10 : 0.1) * profile.smallest;
-        const GatherProfile three = make_gather_profile(profile, spacing, 10);
-        const GatherProfile one = make_gather_profile(profile, spacing, 10, 1);
-        EXPECT_EQ(three.near_radius > 0, is_sparse);
-        EXPECT_EQ(one.near_radius, three.near_radius);
-        EXPECT_EQ(3 * one.table.size(), three.table.size());
-        std::vector<ClusterWeight> weights, own;
-        collect_weights(tree, three, {0, 1, 0}, {0, 1, 0}, {1e-3}, weights);
-        collect_weights(tree, one, {0, 1, 0}, {0, 1, 0}, {1e-3}, own);
-        ASSERT_EQ(own.size(), weights.size());
-        std::vector<float> rgbx(24), grey(6);
-        accumulate(tree, weights, rgbx);
-        accumulate_grey(tree, own, grey);
-        EXPECT_GT(grey[0], 0);
-        for (std::size_t k = 0; k < grey.size(); ++k) {
-            for (std::size_t band = 0; band < 3; ++band) {
-                EXPECT_EQ(grey[k], rgbx[4 * k + band]) << k;
-            }
-        }
-    }
-}
-
 // `entering`: of a row and a normal.
 template <class Entering>
 void expect_sphere_rows(const char* check, int count, double tolerance, double error,
@@ -154,39 +125,6 @@ TEST(GatherMultiple, SphereUnderEvenAndDirectionalLightIsThatOfTheTable) {
         const double cosine = s * n.x + c * n.y;
         return cosine > 0 ? fresnel_transmittance(cosine, row.number("eta")) * cosine : 0.0;
     });
-}
-
-TEST(GatherMultiple, HierarchyTendsToBruteForceWithTheTolerance) {
-    const Samples set = make_sphere(
-        1, 20000, [](glm::dvec3 n) { return std::max(0.0, n.x) * (1 + 0.5 * std::sin(5 * n.z)); });
-    const ClusterTree tree = set.tree();
-    const auto profile = classic_profile(20, 0.5, 1.3);
-    const glm::vec3 receivers[] = {{0, 1, 0}, {1, 0, 0}, {-0.6f, 0.8f, 0}, {0, 0, -1}};
-    double before = 1;
-    std::size_t most = 0;
-    for (const double tolerance : {3e-2, 3e-3, 3e-4, 0.0}) {
-        double error = 0, reference = 0;
-        std::size_t used = 0;
-        for (const glm::vec3 x : receivers) {
-            double exact = 0;
-            for (std::size_t i = 0; i < set.samples.size(); ++i) {
-                const double r = glm::distance(glm::dvec3(x), glm::dvec3(set.samples[i].position));
-                exact += static_cast<double>(set.samples[i].area) *
-                         static_cast<double>(set.irradiance[i]) * profile.eval(0, r);
-            }
-            std::size_t count = 0;
-            error += std::pow(gather(tree, profile, x, x, tolerance, &count) - exact, 2);
-            reference += exact * exact;
-            used += count;
-        }
-        const double relative = std::sqrt(error / reference);
-        EXPECT_LT(relative, std::max(before, 2e-4));
-        EXPECT_LT(relative, tolerance == 0 ? 2e-4 : 0.3 * std::sqrt(tolerance));
-        EXPECT_GT(used, most);
-        before = relative;
-        most = used;
-    }
-    EXPECT_EQ(most, 4 * set.samples.size()) << "without tolerance every sample counts by itself";
 }
 
 // The bound that GatherOptions::tolerance states, node by node: what enters through its samples
@@ -231,14 +169,6 @@ TEST(GatherMultiple, NodeTakenWholeErrsByNoMoreThanTheTolerance) {
         EXPECT_GT(whole, 20u) << tolerance;
         EXPECT_GT(worst, 0.5) << "more nodes are opened than must be at " << tolerance;
     }
-}
-
-TEST(GatherMultiple, PlaneSampledFinelyReturnsTheTotal) {
-    const auto profile = classic_profile(1, 0.05, 1.3);
-    const Samples set = make_plane(60, 120, [](double, double) { return 1.0; });
-    // Beyond the plane's rim lies the tail of a disc of about the same size.
-    const double found = gather(set.tree(), profile, {0, 0, 0}, {0, 1, 0}, 1e-5);
-    EXPECT_NEAR(found, profile.total(0) - profile.tail(0, 60 / std::sqrt(pi)), 2e-3);
 }
 
 TEST(GatherMultiple, SamplesFartherApartThanTheSourceIsDeepStillConserveEnergy) {

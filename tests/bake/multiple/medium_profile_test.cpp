@@ -2,12 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_once.h"
 #include "bake/slab/even_light.h"
 
 namespace opaline::bake {
@@ -83,16 +81,6 @@ TEST(MediumProfile, HalfSpaceReturnsWhatTheSolverSays) {
     EXPECT_NEAR(p.total(0) * escape, half_space_reflectance(0.8, 0, 1.3).rest, 3e-3);
     EXPECT_NEAR(p.total(1) * escape, half_space_reflectance(0.5, 0, 1.3).rest, 3e-3);
     EXPECT_EQ(p.total(2), 0) << "what does not scatter returns nothing";
-}
-
-TEST(MediumProfile, WithoutAbsorptionNothingIsLost) {
-    // Multiple and single parts sum to all entering light (scattering/README.md, "Energy match").
-    for (const float eta : {1.0f, 1.3f, 1.5f}) {
-        const MediumProfile p = make_medium_profile(make_medium({5, 5, 5}, {0, 0, 0}, eta));
-        const double escape = 1 - fresnel_moments(static_cast<double>(eta)).external;
-        const double single = half_space_once(static_cast<double>(eta));
-        EXPECT_NEAR(p.total(0) * escape + single, escape, 8e-3) << eta;
-    }
 }
 
 TEST(MediumProfile, ClassicAndPaperAreLeftAsTheyAre) {

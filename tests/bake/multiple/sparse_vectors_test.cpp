@@ -21,29 +21,6 @@ TEST(SparseVectors, KeepsAveragesAndTheLargestEntries) {
     EXPECT_FLOAT_EQ(norm(dense), std::sqrt(9 + 25 + 16 + 0.01f));
 }
 
-TEST(SparseVectors, DroppedSquaresAreTheErrorAndFallWithTheNumberKept) {
-    std::vector<float> dense(96);
-    for (std::size_t k = 0; k < dense.size(); ++k) {
-        dense[k] = std::sin(static_cast<float>(3 * k * k + 1));
-    }
-    double before = 1e9;
-    for (const std::size_t kept : {6u, 20u, 50u, 96u, 200u}) {
-        SparseVectors::Block vectors;
-        append_truncated(vectors, dense, kept);
-        double error = 0;
-        std::vector<float> back(dense.size(), 0.0f);
-        for (std::size_t i = 0; i < vectors.index.size(); ++i) {
-            back[vectors.index[i]] = vectors.value[i];
-        }
-        for (std::size_t k = 0; k < dense.size(); ++k) {
-            error += std::pow(static_cast<double>(dense[k] - back[k]), 2);
-        }
-        EXPECT_LE(error, before);
-        before = error;
-    }
-    EXPECT_EQ(before, 0);
-}
-
 TEST(SparseVectors, EachIsFoundInItsBlock) {
     SparseVectors vectors;
     constexpr std::size_t kCount = 2 * SparseVectors::kPerBlock + 3;

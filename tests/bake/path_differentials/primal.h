@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -87,12 +86,6 @@ Vector<S> visible_normal(Vector<S> w, double a_x, double a_y, std::array<S, 2> p
     const S z = S(1) - q * (S(1) + seen.z), s = sqrt((S(1) - z * z) / q);
     const Vector<S> h = Vector<S>{s * point[0], s * point[1], z} + seen;
     return normalized(Vector<S>{S(a_x) * h.x, S(a_y) * h.y, h.z});
-}
-
-template <class S>
-Vector<S> triangle_point(std::array<Vector<S>, 3> corner, S u, S v) {
-    const S half = (v > u ? u : v) / S(2);
-    return corner[0] + (u - half) * (corner[1] - corner[0]) + (v - half) * (corner[2] - corner[0]);
 }
 
 }  // namespace opaline::tests

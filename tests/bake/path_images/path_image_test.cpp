@@ -85,36 +85,6 @@ TEST(PathImage, FactorOfARayInTheFurnaceIsTheSameUnderASunAsUnderASky) {
     EXPECT_NEAR(factor(make_distant_light({0, 1, 0})) / under_sky, 1, 1e-5);
 }
 
-// Two transport mean free paths wide, with the furnace's factor. What the model reaches by
-// direction of light: path_accuracy_test.cpp.
-TEST(PathImage, OfLightFromAheadAndFromTheSideIsWithin12PercentOfMonteCarlo) {
-    for (const glm::vec3 to_light : {glm::vec3(0.44f, 0, 0.9f), glm::vec3(0.98f, 0, 0.2f)}) {
-        const auto scene = make_volume_scene(make_ball_volume(4, 0.95f, 0.5f, kLarge),
-                                             make_distant_light(glm::normalize(to_light)));
-        for (const TermSet term : {TermSet::volume_single, TermSet::volume_multiple}) {
-            bake::PathOptions paths;
-            paths.terms = term;
-            const bake::PathSpace space = scene->space(paths);
-            bake::EstimateOptions wanted;
-            wanted.samples = 4000;
-            const auto truth = bake::estimate_pixels(
-                8, wanted, {}, [&](std::uint32_t, bake::RandomStream& random) {
-                    return bake::trace_ray(space, {0.2f, 0.1f, -3}, {0, 0, 1}, random);
-                });
-            ASSERT_TRUE(truth);
-            bake::Moments all;
-            for (const bake::Moments& m : truth->pixel) {
-                all.merge(m);
-            }
-            bake::PathImageOptions options;
-            options.terms = term;
-            const double ratio =
-                look_along(*scene, {0.2f, 0.1f, -3}, {0, 0, 1}, options).x / all.mean.x;
-            EXPECT_NEAR(ratio, 1, term == TermSet::volume_single ? 0.04 : 0.12) << to_light.x;
-        }
-    }
-}
-
 TEST(PathImage, ChannelsOfOtherCoefficientsAreThoseOfGreyMedia) {
     const formats::Environment light = make_distant_light({0, 1, 0});
     formats::Volume colored = make_ball_volume(2, 0.9f, 0.5f);

@@ -133,14 +133,6 @@ TEST(PathEstimate, OfAThinMediumGrowsWithTheSquareOfItsDensity) {
     EXPECT_EQ(value(0), 0);
 }
 
-TEST(PathEstimate, WithoutAbsorptionEndsWhereThePathLeaves) {
-    const ZonalTable table = table_of(PathKernel::source, 0.9);
-    const double value = estimate(table, {dvec3(0), {0, 0, 1}, {0, 0, 1}}, tests::Ball{1e4, 1, 1},
-                                  {.box = tests::cube(1), .step = 0.01});
-    EXPECT_TRUE(std::isfinite(value));
-    EXPECT_GT(value, 0);
-}
-
 TEST(PathEstimate, OfAnyDensityIsFiniteAndNotNegative) {
     for (const PathKernel kernel : {PathKernel::ray, PathKernel::source}) {
         for (const double g : {-0.9, -0.3, 0.0, 0.9}) {

@@ -225,31 +225,5 @@ TEST(QuasiPath, StepsIntoADenseCloudAreShort) {
     EXPECT_LE(deepest, 0.5);
 }
 
-// What a path absorbs of the light that it emits to its start: with an enclosure of the same
-// radiance, or without an end, the start sees that radiance.
-TEST(QuasiPath, EmittingMediumInAFurnaceShowsItsRadiance) {
-    const auto radiance = [](const QuasiPath& path, const auto& medium, const MarchLimits& limits) {
-        double unscattered = 0, scattered = 0;
-        const PathEnd end = march_quasi_path(path, medium, limits, [&](const PathStep& step) {
-            const double emitted = medium(step.position).absorption * step.length;
-            const double survival = std::exp(-step.absorption);
-            unscattered += emitted * survival * std::exp(-step.ell);
-            scattered += emitted * survival * -std::expm1(-step.ell);
-            return true;
-        });
-        return std::vector{unscattered, scattered, std::exp(-end.absorption)};
-    };
-    const Turn turn = turn_between({0, 0, 1}, {0, 0.6, -0.8});
-    const std::vector<double> infinite =
-        radiance({dvec3(0), turn, 5}, homogeneous(0.9, 0.1),
-                 {.box = tests::cube(1e4), .step = 0.005, .length = 400});
-    EXPECT_NEAR(infinite[0], 0.1, 1e-6);
-    EXPECT_NEAR(infinite[1], 0.9, 1e-6);
-    EXPECT_NEAR(infinite[2], 0, 1e-6);
-    const std::vector<double> enclosed = radiance({{0, 0.1, -2}, turn, 5}, tests::Blob{6, 0.5, 0.8},
-                                                  {.box = tests::cube(2), .step = 0.0005});
-    EXPECT_NEAR(enclosed[0] + enclosed[1] + enclosed[2], 1, 1e-6);
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "bake/path_integral/forward_split.h"
-#include "bake/scattering/gauss_legendre.h"
 #include "bake/scattering/phase.h"
 #include "bake/scattering/poisson_phase.h"
 #include "tests/bake/scattering/phase_support.h"
@@ -76,26 +75,6 @@ TEST(ZonalTable, IsWithin1e4OfTheSeries) {
             const Errors errors =
                 table_errors(kernel, split_forward_peak(expand_henyey_greenstein(g, 6), 4).rest);
             EXPECT_LT(errors.of_peak, 1e-4) << g;
-        }
-    }
-}
-
-// The eye's ray is a free flight before the first scattering.
-TEST(ZonalTable, RaysAreFreeFlightsToSources) {
-    const GaussLegendre rule = make_gauss_legendre(48);
-    for (const double g : {-0.3, 0.5, 0.9}) {
-        const PhaseSeries series = expand_henyey_greenstein(g, 400);
-        for (const double ell : {1e-6, 0.3, 5.0, 20.0}) {
-            for (const double cosine : {-1.0, -0.2, 0.7, 1.0}) {
-                double sum = 0;
-                for (std::size_t i = 0; i < rule.node.size(); ++i) {
-                    const double t = ell * rule.node[i];
-                    sum += ell * rule.weight[i] * std::exp(-t) *
-                           by_series(PathKernel::source, series, cosine, ell - t);
-                }
-                EXPECT_NEAR(by_series(PathKernel::ray, series, cosine, ell) / sum, 1, 1e-8)
-                    << g << ' ' << ell << ' ' << cosine;
-            }
         }
     }
 }

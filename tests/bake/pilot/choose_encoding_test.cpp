@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <vector>
 
 namespace opaline::bake {
 namespace {
@@ -14,30 +14,25 @@ ErrorBounds around(double rms, double standard_error) {
     return {rms, rms - 2 * standard_error, rms + 2 * standard_error};
 }
 
-TEST(ChooseEncoding, TheFirstThatIsSureToMeetTheTargetIsTaken) {
-    const std::array errors{around(0.030, 1e-3), around(0.019, 1e-3), around(0.016, 1e-3),
-                            around(0.010, 1e-3)};
-    EXPECT_EQ(choose_encoding(errors, 0.02), 2u) << "1.9 % is likely but not sure";
-    EXPECT_EQ(choose_encoding(errors, 0.05), 0u);
-}
-
-TEST(ChooseEncoding, WhereNoneIsSureTheFirstThatIsHardlyLessSureThanTheSurestIsTaken) {
-    // A floor of .9 %, whose noise no coefficient lowers.
-    const std::array errors{around(0.0150, 6e-4), around(0.0096, 6e-4), around(0.0091, 6e-4),
-                            around(0.0090, 6e-4)};
-    EXPECT_EQ(choose_encoding(errors, 0.01), 2u);
-}
-
-TEST(ChooseEncoding, WhereNoneIsLikelyBytesAreNotWasted) {
-    const std::array errors{around(0.15, 1e-3), around(0.103, 1e-3), around(0.1, 1e-3)};
-    EXPECT_EQ(choose_encoding(errors, 0.01), 1u);
-}
-
-TEST(ChooseEncoding, WhatIsLikelyIsTakenBeforeWhatIsHardlyLessSure) {
-    // Within a twentieth of the surest, but not even likely.
-    const std::array errors{around(0.0098, 3e-4), around(0.0094, 3e-4), around(0.0094, 3e-4)};
-    EXPECT_GT(likely_error(errors[0]), 0.01);
-    EXPECT_EQ(choose_encoding(errors, 0.01), 1u);
+TEST(ChooseEncoding, TheFirstThatIsSureElseTheFirstHardlyLessSureThanTheSurestIsTaken) {
+    struct Row {
+        const char* what;
+        std::vector<double> errors;
+        double deviation, target;
+        std::size_t taken;
+    };
+    for (const Row& row : {
+             Row{"1.9 % is likely but not sure", {0.030, 0.019, 0.016, 0.010}, 1e-3, 0.02, 2},
+             Row{"all are sure", {0.030, 0.019, 0.016, 0.010}, 1e-3, 0.05, 0},
+             Row{"a floor of noise", {0.0150, 0.0096, 0.0091, 0.0090}, 6e-4, 0.01, 2},
+             Row{"none is likely", {0.15, 0.103, 0.1}, 1e-3, 0.01, 1},
+             Row{"near the surest, but not likely", {0.0098, 0.0094, 0.0094}, 3e-4, 0.01, 1},
+         }) {
+        std::vector<ErrorBounds> errors;
+        for (const double error : row.errors)
+            errors.push_back(around(error, row.deviation));
+        EXPECT_EQ(choose_encoding(errors, row.target), row.taken) << row.what;
+    }
 }
 
 TEST(ChooseEncoding, ACheckWithNoiseOfItsOwnFindsMoreThanIsSureInOneOfFortyCases) {

@@ -34,15 +34,6 @@ TEST(AddOtherLight, RowsTakeTheirShareOfEachBandAndGreyOnesTheLuminance) {
     }
 }
 
-TEST(AddOtherLight, NoneAddsNothing) {
-    std::vector<float> values(6, 1);
-    EXPECT_EQ(add_other_light(nullptr, {}, {{0, {1, 1, 1}}}, {values, 1, 1, 1}), 0u);
-    EXPECT_EQ(values, std::vector<float>(6, 1));
-    TwoEstimates seen{{1.0}, {1.0}};
-    EXPECT_EQ(add_true_other_light({}, {}, 0, 1, seen), 0u);
-    EXPECT_EQ(seen.first[0], 1);
-}
-
 TEST(AddOtherLight, TruthIsIrradianceOverPi) {
     std::vector<std::uint64_t> keys;
     const OtherLight::TrueIrradiance even = [&](const Receiver&, std::uint64_t key, std::uint32_t,

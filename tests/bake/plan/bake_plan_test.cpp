@@ -9,20 +9,6 @@
 namespace opaline::bake {
 namespace {
 
-TEST(BakePlan, KnobsFollowTheQualityUnlessGiven) {
-    BakeOptions options;
-    options.quality = Quality::production;
-    const auto preset = resolve_knobs(options);
-    ASSERT_TRUE(preset);
-    options.cubemap_size = 8;
-    options.coefficients = 20;
-    const auto given = resolve_knobs(options);
-    ASSERT_TRUE(given);
-    EXPECT_EQ(given->cubemap_size, 8u);
-    EXPECT_EQ(given->coefficients, 20u);
-    EXPECT_EQ(given->code_bits, preset->code_bits);
-}
-
 TEST(BakePlan, ImpossibleKnobsAreUsageErrors) {
     for (const std::uint32_t size : {1u, 7u, 24u, 256u}) {
         BakeOptions options;

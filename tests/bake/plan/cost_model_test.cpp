@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <functional>
-#include <numeric>
 
 #include "bake/effects/multiple/multiple_stage.h"
 #include "tests/support/effects.h"
@@ -117,14 +116,6 @@ TEST(CostModel, OpaqueReceiversOfThePilotPayInItsFirstStageAlone) {
     ASSERT_EQ(pilot.size(), 2u);
     EXPECT_GT(pilot[0], 0);
     EXPECT_EQ(pilot[1], 0);
-}
-
-TEST(CostModel, PredictingTwiceIsPredictingOnce) {
-    const formats::Scene scene = ball_on_floor();
-    Predicted p = predict(scene);
-    const double first = p.plan[0].predicted_seconds;
-    predict_costs(scene, inspect_scene(scene), {}, {}, 2, p.plan);
-    EXPECT_EQ(p.plan[0].predicted_seconds, first);
 }
 
 TEST(CostModel, EffectsThatAreOffCostNothingAndLeaveNoStage) {

@@ -64,10 +64,5 @@ TEST(RuleColour, WhatIsNotSimulatedHasNoColour) {
     EXPECT_EQ(decision.layout.bands(), 1u);
 }
 
-TEST(RuleColour, OpaqueSurfacesAreNotAsked) {
-    const auto scene = tests::make_scene({tests::make_sphere(1)});
-    EXPECT_EQ(find_entry(plan_bake(scene, inspect_scene(scene), {}), "light.colour", 0), nullptr);
-}
-
 }  // namespace
 }  // namespace opaline::bake

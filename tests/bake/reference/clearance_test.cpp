@@ -45,18 +45,6 @@ TEST(ReferenceClearance, NoRayMeetsASurfaceWithinIt) {
     }
 }
 
-TEST(ReferenceClearance, CountsWholeCellsInAHollowCube) {
-    // 2 m in cells of 0.1 m: the middle is 8 whole cells from every face or more.
-    const auto cube = make_fixture(make_scene({make_cube(1, false)}), make_white_sky());
-    const bake::ClearanceGrid clearance = around(cube->scene.surfaces, 0.1f);
-    EXPECT_GE(clearance({0, 0, 0}), 0.79f);
-    EXPECT_LE(clearance({0, 0, 0}), 1);
-    EXPECT_NEAR(clearance({0.5f, 0, 0}), 0.35f, 0.11f);
-    EXPECT_EQ(clearance({0.99f, 0, 0}), 0);
-    EXPECT_EQ(clearance({1.5f, 0, 0}), 0) << "outside nothing is known";
-    EXPECT_EQ(bake::ClearanceGrid()({0, 0, 0}), 0);
-}
-
 // Each triangle spans the whole grid. Marking the cells of all would take minutes, and hours for
 // 100 000 triangles.
 TEST(ReferenceClearance, NothingIsKnownOfASoupOfTrianglesAsLargeAsTheScene) {

@@ -118,16 +118,6 @@ TEST(ReferenceFurnace, BodiesOfOneMediumThatTouchOrOverlapAreOneBody) {
     }
 }
 
-// Here the light is sampled too: weights of two strategies, which vary from path to path, add up.
-TEST(ReferenceFurnace, MatchedBodyThatAbsorbsNothingIsAsBrightAsItsSurroundings) {
-    for (const float g : {0.7f, -0.4f}) {
-        Scene input = make_scene({make_sphere(2)});
-        input.materials[0].medium = make_medium(1, 1, g, 1);
-        const auto body = make_fixture(std::move(input), make_white_sky());
-        expect_white(estimate(*body, 8, 200000), describe(1, g));
-    }
-}
-
 TEST(ReferenceFurnace, HoldsForEachChannelOfAColouredMedium) {
     formats::Medium medium = make_medium(1, 1, 0.5f, 1.3f);
     medium.sigma_s = {0.3f, 2, 9};
@@ -171,25 +161,6 @@ TEST(ReferenceFurnace, TwoSheetsExchangeLightAsTheSeriesSays) {
     const double expected = kReflect + kTransmit * kTransmit / (1 - kReflect);
     EXPECT_NEAR(seen.mean.x, expected, 4 * standard_error(seen) + 1e-3);
     EXPECT_LT(standard_error(seen), 2e-3);
-}
-
-TEST(ReferenceFurnace, ShellsOfOneMediumInEachOtherAreOneBody) {
-    // The inner shell changes nothing: same paths, same numbers.
-    Scene lone = make_scene({make_sphere(2)}),
-          nested = make_scene({make_sphere(2), make_sphere(2, 0.5f)});
-    lone.materials[0].medium = nested.materials[0].medium = make_medium(4, 0.8f, 0, 1.4f);
-    const auto a = make_fixture(std::move(lone), make_half_sky(true));
-    const auto b = make_fixture(std::move(nested), make_half_sky(true));
-    const auto chosen = bake::choose_receivers(a->scene, 3, 3, kAlongNormals);
-    bake::EstimateOptions options;
-    options.samples = 30000;
-    const auto outer = bake::estimate_receivers(a->space(), chosen, options, {}).value();
-    const auto both = bake::estimate_receivers(b->space(), chosen, options, {}).value();
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        EXPECT_NEAR(outer.pixel[i].mean.x, both.pixel[i].mean.x,
-                    3 * std::hypot(standard_error(outer.pixel[i]), standard_error(both.pixel[i])));
-    }
-    EXPECT_EQ(both.lost, 0u);
 }
 
 // Light that goes into a core and out again through its coat is the coat's: none is left for

@@ -1,8 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <string>
-
-#include "bake/reference/directional_albedo.h"
 #include "bake/reference/glossy_brdf.h"
 #include "tests/bake/reference/reference_support.h"
 
@@ -45,28 +42,6 @@ std::unique_ptr<ReferenceFixture> plate(const formats::Gloss& gloss, formats::En
     return make_fixture(std::move(input), std::move(sky));
 }
 
-TEST(ReferenceGlossPaths, WhiteBallsUnderWhiteLightAreWhite) {
-    for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
-        for (const formats::Gloss& gloss : {metal(roughness), dielectric(roughness)}) {
-            Scene input = make_scene({make_sphere(2)});
-            input.materials[0].gloss = gloss;
-            const auto ball = make_fixture(std::move(input), make_white_sky());
-            for (const std::optional<glm::vec3> eye :
-                 {std::optional<glm::vec3>(), std::optional(glm::vec3(0, 500, 0))}) {
-                auto chosen = bake::choose_receivers(ball->scene, 1000, 3, eye);
-                std::erase_if(chosen, [](const bake::ReferenceReceiver& r) {
-                    return glm::dot(r.normal, r.to_eye) < 0.05f;
-                });
-                ASSERT_GT(chosen.size(), 5u);
-                const bake::Moments all = mean_over(
-                    ball->space(), chosen, 64000 / static_cast<std::uint32_t>(chosen.size()));
-                EXPECT_NEAR(all.mean.y, 1, 5e-3) << roughness << " metallic " << gloss.metallic;
-                EXPECT_LT(standard_error(all), 3e-3);
-            }
-        }
-    }
-}
-
 // Radiance toward the eye, by a quadrature of the BRDF over the disc.
 glm::dvec3 lit_by_sun(const formats::Gloss& gloss, glm::vec3 to_eye) {
     bake::OpaqueSurface surface;
@@ -96,7 +71,7 @@ glm::dvec3 lit_by_sun(const formats::Gloss& gloss, glm::vec3 to_eye) {
 
 // The light is sampled as well as the lobe: both strategies' weights add up.
 TEST(ReferenceGlossPaths, SunOnAPlateMatchesTheBrdf) {
-    for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
+    for (const float roughness : {0.1f, 0.6f}) {
         for (const formats::Gloss& gloss : {metal(roughness), dielectric(roughness)}) {
             const auto lit = plate(gloss, small_sun());
             // Near the mirror direction of the sun, and along the normal.

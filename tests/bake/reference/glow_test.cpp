@@ -69,17 +69,6 @@ TEST(ReferenceGlow, ItsLightNeedsNoDensity) {
                     column() * glm::vec3(5, 4, 3));
 }
 
-TEST(ReferenceGlow, InEquilibriumWithTheSkyAScatteringVolumeCannotBeSeen) {
-    for (const float g : {0.0f, 0.7f}) {
-        formats::Volume blob = make_volume(make_blob(kSize, kSize / 8), 3, 0.9f, g);
-        blob.sigma_t = {1, 3, 6};
-        blob.albedo = {0.9f, 0.7f, 0.4f};
-        make_it_glow(blob, glm::vec3(2));
-        expect_radiance(look_at_glow({blob}, 2, {-4, 0.2f, 0.1f}, {1, 0, 0}, 64000, TermSet::all),
-                        glm::vec3(2));
-    }
-}
-
 TEST(ReferenceGlow, InEquilibriumWithTheSkyAlbedosThatDifferFromPlaceToPlaceCannotBeSeen) {
     formats::Volume blob = make_volume(make_blob(kSize, kSize / 8), 3, 0, 0.7f);
     vary_albedo(blob,

@@ -18,50 +18,6 @@ bake::Moments look_at_half_space(float albedo, float g, float eta, formats::Term
     return look_down(half_space->space(options), 0.5f * kDepth, cosine, samples);
 }
 
-// Radiance after one scattering under uniform light (single/README.md, "Transport") with its
-// Jacobian and the true refracted view path: the integral over depth is 1 / (sigma_t (1 + mu_o' /
-// c')).
-double single_radiance(double albedo, double g, double eta, double view) {
-    const double mu = std::sqrt(1 - (1 - view * view) / (eta * eta));
-    const int steps = 2000, turns = g == 0 || view == 1 ? 1 : 200;
-    double sum = 0;
-    for (int i = 0; i < steps; ++i) {
-        const double c = (i + 0.5) / steps, ct = std::sqrt(1 - (1 - c * c) / (eta * eta));
-        if (!(ct > 0)) continue;  // total reflection
-        const double jacobian = c / (eta * eta * ct);
-        for (int k = 0; k < turns; ++k) {
-            const double phi = 2 * std::numbers::pi * (k + 0.5) / turns;
-            const double cosine =
-                -(ct * mu + std::sqrt((1 - ct * ct) * (1 - mu * mu)) * std::cos(phi));
-            const double p =
-                (1 - g * g) / (4 * std::numbers::pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
-            sum += p * transmittance(c, eta) * jacobian / (1 + mu / ct);
-        }
-    }
-    return albedo * transmittance(view, eta) * 2 * std::numbers::pi * sum / (steps * turns);
-}
-
-TEST(ReferenceHalfSpace, SingleScatteringIsItsIntegralWithTheJacobian) {
-    struct Case {
-        double albedo, g, eta, view;
-    };
-    for (const Case& c : {Case{0.9, 0, 1, 1},
-                          {0.9, 0, 1.3, 1},
-                          {0.8, 0, 1.5, 0.3},
-                          {0.8, 0.6, 1.3, 1},
-                          {1, -0.5, 1.3, 0.4},
-                          {1, 0.5, 1, 0.5},
-                          {0.7, 0, 0.8, 0.9}}) {
-        const bake::Moments m = look_at_half_space(
-            static_cast<float>(c.albedo), static_cast<float>(c.g), static_cast<float>(c.eta),
-            formats::TermSet::single, static_cast<float>(c.view), 320000);
-        const double expected = single_radiance(c.albedo, c.g, c.eta, c.view);
-        EXPECT_NEAR(m.mean.x, expected, 3 * standard_error(m))
-            << "eta " << c.eta << " g " << c.g << " view " << c.view;
-        EXPECT_LT(standard_error(m), 0.02 * expected);
-    }
-}
-
 TEST(ReferenceHalfSpace, SingleAndMultipleScatteringAgreeWithThePublishedWalk) {
     struct Row {
         float eta, albedo;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <utility>
-#include <vector>
 
 #include "bake/path_differentials/bounded_change.h"
 #include "bake/path_differentials/surface_shape.h"
@@ -51,27 +50,6 @@ TEST(PathFilter, APixelOnABoardIsItsAngleTimesTheDistance) {
     filter.arrive(scene, {0, -1, 0}, *hit);
     // 3 m away, half a texture per metre, steps of 1/4: 0.00375 and 0.0075.
     EXPECT_NEAR(area_of(filter.view().moments), 0.00375 * 0.0075, 1e-9);
-}
-
-TEST(PathFilter, AMirrorUnfoldsTheCamera) {
-    const Scene scene = textured_board(0);
-    const auto fixture = make_fixture(scene, {});
-    const TextureFiltering filtering = filtering_of(scene, 1);
-    const auto extent_after = [&](bool through_mirror) {
-        PathFilter filter(filtering, {0.01f, 0, 0}, {0, 0, 0.01f});
-        const glm::vec3 up(0, 1, 0);
-        if (through_mirror) {
-            // From below: 1 m up to a flat mirror and 2 m down to the board.
-            filter.arrive(scene, up, hit_at(1, {0.3f, 2, 0.1f}, -up));
-            filter.mirror(up, -up);
-        }
-        const float height = through_mirror ? 2 : 3;
-        const auto hit = fixture->scene.surfaces.closest_hit({{0.3f, height, 0.1f}}, -up, 100);
-        EXPECT_TRUE(hit);
-        filter.arrive(scene, -up, *hit);
-        return area_of(filter.view().moments);
-    };
-    EXPECT_NEAR(extent_after(true) / extent_after(false), 1, 1e-5);
 }
 
 TEST(PathFilter, AnEventSpreadsItsDensityOverTheSurface) {

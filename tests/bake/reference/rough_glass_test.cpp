@@ -1,9 +1,6 @@
 // Paths through clear bodies with a rough boundary.
 #include <gtest/gtest.h>
 
-#include <numbers>
-#include <string>
-
 #include "bake/reference/ggx.h"
 #include "bake/reference/rough_boundary.h"
 #include "tests/bake/reference/reference_support.h"
@@ -134,15 +131,6 @@ TEST(RoughGlass, WithoutItsOwnMirrorAReceiverHasEverythingElse) {
                     4 * std::hypot(standard_error(whole), standard_error(expected)) + 1e-3)
             << roughness;
     }
-}
-
-TEST(RoughGlass, NarrowFacetsShowWhatASmoothBallShows) {
-    const bake::Moments smooth = seen_from(*glass_ball(rough_glass(0), false), {}, 20000);
-    const bake::Moments narrow = seen_from(*glass_ball(rough_glass(0.04f), false), {}, 20000);
-    const bake::Moments wide = seen_from(*glass_ball(rough_glass(0.7f), false), {}, 20000);
-    const double noise = std::hypot(standard_error(smooth), standard_error(narrow));
-    EXPECT_NEAR(narrow.mean.x, smooth.mean.x, 4 * noise + 2e-3);
-    EXPECT_GT(std::abs(wide.mean.x - smooth.mean.x), 0.02);
 }
 
 TEST(RoughGlass, ABodyThatScattersKeepsASmoothBoundary) {

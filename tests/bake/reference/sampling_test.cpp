@@ -3,6 +3,7 @@
 #include "bake/environment/builtin_environment.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
+#include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::tests {
 namespace {
@@ -10,20 +11,12 @@ namespace {
 using formats::PhaseFunction;
 
 std::vector<PhaseFunction> some_phase_functions() {
-    std::vector<PhaseFunction> all;
-    all.push_back({});
-    for (const float g : {-0.9f, 5e-5f, 0.3f, 0.95f}) {
-        all.push_back({PhaseFunction::Type::henyey_greenstein, g, 0, {}, {}});
-    }
-    all.push_back({PhaseFunction::Type::rayleigh, 0, 0, {}, {}});
-    for (const float rms : {0.05f, 0.4f, 1.0f}) {
-        all.push_back({PhaseFunction::Type::gaussian, 0, rms, {}, {}});
-    }
-    all.push_back({PhaseFunction::Type::tabulated,
-                   0,
-                   0,
-                   {-1, -0.5f, 0.25f, 0.9f, 1},
-                   {0.0f, 0.1f, 0.02f, 0.3f, 0.0f}});
+    std::vector<PhaseFunction> all{
+        {}, rayleigh(), table_of({-1, -0.5f, 0.25f, 0.9f, 1}, {0.0f, 0.1f, 0.02f, 0.3f, 0.0f})};
+    for (const double g : {-0.9, 5e-5, 0.3, 0.95})
+        all.push_back(hg(g));
+    for (const float rms : {0.05f, 0.4f, 1.0f})
+        all.push_back(gaussian(rms));
     return all;
 }
 
@@ -93,22 +86,6 @@ TEST(ReferenceLight, DensityIntegratesToOneAndItsSamplesGiveTheIrradiance) {
         if (std::string(name) == "studio") {
             EXPECT_LT(sampled.variance_of_mean().y, 0.1 * evenly.variance_of_mean().y);
         }
-    }
-}
-
-TEST(ReferenceReceivers, WhiteSurfaceFacingTheSunHasRadianceOne) {
-    const auto sun = bake::make_environment("sun:0,90");
-    ASSERT_TRUE(sun);
-    const auto floor =
-        make_fixture(make_scene({make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, 4)}), *sun);
-    const auto receivers = bake::choose_receivers(floor->scene, 1000, 0, std::nullopt);
-    ASSERT_EQ(receivers.size(), 25u) << "no more than there are";
-    bake::EstimateOptions options;
-    options.samples = 16;
-    const auto estimate = bake::estimate_receivers(floor->space(), receivers, options, {});
-    ASSERT_TRUE(estimate);
-    for (const bake::Moments& m : estimate->pixel) {
-        EXPECT_NEAR(m.mean.x, 1, 1e-4);
     }
 }
 

@@ -169,40 +169,6 @@ TEST(ReferenceVolume, PathsOfALengthGoAsFarAsIsKnown) {
     }
 }
 
-// Bounds of cells, empty space, the way in and out: all must leave the integral as it is.
-TEST(ReferenceVolume, TransmitsByBeersLawAlongAnyRay) {
-    const auto fixture =
-        make_volume_fixture({make_volume(make_blob(0.5, 0.0625), 4, 0.5f, 0)}, make_white_sky());
-    const bake::VolumeSpace& space = fixture->scene.volumes;
-    bake::RandomStream turn(5, 0, 0);
-    for (std::uint32_t ray = 0; ray < 12; ++ray) {
-        const auto u = [&] { return 2 * turn.next() - 1; };
-        glm::vec3 direction = glm::normalize(glm::vec3(u(), u(), u()));
-        glm::vec3 from = glm::vec3(u(), u(), u()) - 2.5f * direction;
-        if (ray < 3) {  // along the faces of cells, and from a corner of one
-            direction = glm::vec3(ray == 0, ray == 1, ray == 2);
-            from = glm::vec3(0.5f) - 3.5f * direction;
-        }
-        double depth = 0;
-        constexpr int kSteps = 20000;
-        for (int i = 0; i < kSteps; ++i) {
-            const float t = 6 * (static_cast<float>(i) + 0.5f) / kSteps;
-            depth += 6.0 / kSteps * space.volumes[0].density(from + t * direction) * 4;
-        }
-        bake::Moments flights, lines;
-        for (std::uint32_t i = 0; i < 20000; ++i) {
-            bake::RandomStream random(7, ray, i);
-            const auto flight =
-                bake::sample_volume_flight(space, from, direction, 6, glm::vec3(1), random);
-            flights.add(glm::dvec3(flight.collides ? 0.0 : 1.0));
-            lines.add(bake::estimate_transmittance(space, from, direction, 6, random));
-        }
-        EXPECT_NEAR(flights.mean.x, std::exp(-depth), 4 * standard_error(flights)) << ray;
-        EXPECT_NEAR(lines.mean.x, std::exp(-depth), 4 * standard_error(lines)) << ray;
-        EXPECT_LT(standard_error(lines), 0.004);
-    }
-}
-
 // Segments follow one another, cover what is dense, and their bounds hold.
 TEST(ReferenceVolume, BoundsOfCellsAreNeverExceeded) {
     auto second = make_volume(make_ball_grid(0.7, 0.05), 3, 1, 0);

@@ -29,17 +29,6 @@ TEST(Fresnel, SharesAnglesAndMomentsAreThoseOfTheTable) {
         "Fdr_fit", [](const Row& row) { return fitted_diffuse_reflectance(row.number("eta")); });
 }
 
-TEST(Fresnel, SameFromBothSidesOfTheBoundary) {
-    for (const double eta : {0.4, 0.8, 1.0, 1.000001, 1.3, 2.5}) {
-        for (const double cosine : {1.0, 0.7, 0.3, 0.01}) {
-            const double inside = refracted_cosine(cosine, eta);
-            if (inside == 0) continue;
-            EXPECT_NEAR(fresnel_transmittance(cosine, eta), fresnel_transmittance(inside, 1 / eta),
-                        1e-10);
-        }
-    }
-}
-
 TEST(Fresnel, MomentsOfBothSidesObeyReciprocity) {
     for (const double eta : {0.34, 0.7, 1.001, 1.2, 1.7, 3.0}) {
         const FresnelMoments m = fresnel_moments(eta);

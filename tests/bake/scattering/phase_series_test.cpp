@@ -66,15 +66,6 @@ TEST(PhaseSeries, CoefficientsAreTheLegendreMomentsOfTheFunction) {
     }
 }
 
-TEST(PhaseSeries, HenyeyGreensteinAndRayleighAreExact) {
-    const PhaseSeries forward = expand_phase(hg(-0.5), 6);
-    for (int l = 0; l < 6; ++l) {
-        EXPECT_EQ(forward.lambda[std::size_t(l)], std::pow(-0.5, l));
-    }
-    EXPECT_EQ(expand_phase(rayleigh(), 5).lambda, (std::vector<double>{1, 0, 0.1, 0, 0}));
-    EXPECT_EQ(expand_phase({}, 3).lambda, (std::vector<double>{1, 0, 0}));
-}
-
 // For small angles the Gaussian is a normal distribution on the tangent plane with <theta^2> =
 // rms^2, whose Fourier transform at frequency l + 1/2 is exp(-(l + 1/2)^2 rms^2 / 4).
 TEST(PhaseSeries, NarrowGaussianFallsAsItsFourierTransform) {

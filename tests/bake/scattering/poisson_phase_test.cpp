@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "bake/scattering/gauss_legendre.h"
@@ -28,17 +27,6 @@ double eval_after_many(const PhaseDensity& density, const PhaseSeries& series, d
         rest.push_back(moment_after_many(lambda, ell) - once * lambda);
     }
     return once * eval_phase(density, cosine) + eval_zonal(rest, cosine);
-}
-
-using std::numbers::pi;
-
-struct Henyey {
-    PhaseDensity density;
-    PhaseSeries series;
-};
-
-Henyey henyey(double g) {
-    return {make_phase_density(tests::hg(g)), expand_henyey_greenstein(g, 1024)};
 }
 
 TEST(PoissonPhase, ShareThatIsScatteredIsThatOfTheTable) {
@@ -109,33 +97,6 @@ TEST(PoissonPhase, OfBackwardScatteringTheTableHasEightDegrees) {
         ++count;
     }
     EXPECT_EQ(count, 3);
-}
-
-TEST(PoissonPhase, IntegralIs1AndNoDirectionIsDark) {
-    const GaussLegendre rule = make_gauss_legendre(400);
-    for (const double g : {-0.7, 0.0, 0.5, 0.9}) {
-        const Henyey phase = henyey(g);
-        for (const double ell : {1e-6, 1e-2, 1.0, 30.0, 1e3}) {
-            double sum = 0;
-            for (std::size_t i = 0; i < rule.node.size(); ++i) {
-                const double value =
-                    eval_after_many(phase.density, phase.series, ell, 2 * rule.node[i] - 1);
-                EXPECT_GT(value, -1e-12) << g << ' ' << ell;
-                sum += 4 * pi * rule.weight[i] * value;
-            }
-            EXPECT_NEAR(sum, 1, 1e-9) << g << ' ' << ell;
-        }
-    }
-}
-
-TEST(PoissonPhase, IsThePhaseFunctionOfAThinMediumAndEvenInADeepOne) {
-    const Henyey phase = henyey(0.75);
-    for (const double cosine : {-1.0, -0.2, 0.6, 1.0}) {
-        const double once = eval_phase(phase.density, cosine);
-        EXPECT_NEAR(eval_after_many(phase.density, phase.series, 1e-6, cosine) / once, 1, 1e-5);
-        EXPECT_EQ(eval_after_many(phase.density, phase.series, 0, cosine), once);
-        EXPECT_NEAR(eval_after_many(phase.density, phase.series, 130, cosine), 1 / (4 * pi), 1e-10);
-    }
 }
 
 // A ray is a free flight before it scatters for the first time (math: Duhamel's integral).

@@ -72,17 +72,6 @@ TEST(MediumField, TheLocalScatteringColorIsTheStatedOneTimesTheFields) {
     EXPECT_EQ(field.albedo({0, 0, 0}).z, 0);
 }
 
-TEST(MediumField, AWhiteFieldHasTheStatedAlbedoToTheBit) {
-    formats::Scene scene = make_ball(tests::make_grey_medium(7, 0.3f));
-    variation_of(scene).color = tests::add_inner_texture(scene, tests::make_even_image(255));
-    variation_of(scene).density = tests::add_inner_texture(scene, tests::make_even_image(255));
-    const MediumField field(scene, 0);
-    for (const glm::vec3 at : {glm::vec3(0.123f), {-0.7f, 0.21f, 0.33f}, {9, 9, 9}}) {
-        EXPECT_EQ(field.albedo(at).x, 7 / (7 + 0.3f));
-        EXPECT_EQ(field.density(at), 1);
-    }
-}
-
 TEST(MediumField, DensityIsTheRedChannelAndNeverZero) {
     formats::Scene scene = make_ball(tests::make_grey_medium(9, 1));
     variation_of(scene).density =

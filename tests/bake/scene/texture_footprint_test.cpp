@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "bake/scene/base_color.h"
-
 namespace opaline::bake {
 namespace {
 
@@ -73,34 +71,6 @@ TEST(TextureFootprint, ATriangleHasItsSecondMoments) {
     EXPECT_NEAR(found.uu / (12 * mean.x), 1, 0.01);
     EXPECT_NEAR(found.uv / (12 * mean.y), 1, 0.01);
     EXPECT_NEAR(found.vv / (12 * mean.z), 1, 0.01);
-}
-
-// Checks of 1/64: over a quarter of them half the light, at a point all or none of it.
-TEST(TextureFootprint, AFineCheckerOverAnAreaIsItsMean) {
-    formats::Scene scene;
-    scene.primitives.push_back(slanted_triangle());
-    scene.materials.resize(1);
-    scene.materials[0].base_color = {0.5f, 1, 1};
-    scene.materials[0].base_color_image = 0;
-    formats::Image8& image = scene.images.emplace_back(formats::Image8{64, 64, {}});
-    for (std::uint32_t i = 0; i < 64 * 64; ++i) {
-        const std::uint8_t value = (i % 64 + i / 64) % 2 == 0 ? 255 : 0;
-        image.rgba.insert(image.rgba.end(), {value, value, value, 255});
-    }
-    const ScenePyramids pyramids = make_scene_pyramids(scene);
-    const glm::dmat3x2 map = uv_gradient(scene.primitives[0], 0);
-    double least = 1, most = 0;
-    for (int i = 0; i < 50; ++i) {
-        const float v = static_cast<float>(i) / 75, w = static_cast<float>(i % 7) / 21;
-        const SurfacePlace place = surface_place(scene, 0, 0, {1 - v - w, v, w});
-        const TextureView view{pyramids, moments_of_area(map, 0.25)};
-        EXPECT_NEAR(base_color(scene, place, &view).x, 0.25, 0.005);
-        EXPECT_NEAR(base_color(scene, place, &view).y, 0.5, 0.01);
-        least = std::min(least, static_cast<double>(base_color(scene, place).x));
-        most = std::max(most, static_cast<double>(base_color(scene, place).x));
-    }
-    EXPECT_LT(least, 0.2);
-    EXPECT_GT(most, 0.3);
 }
 
 }  // namespace

@@ -69,23 +69,6 @@ TEST(TexturePyramid, AFootprintBelowATexelIsThePoint) {
     }
 }
 
-TEST(TexturePyramid, ALongFootprintAveragesAlongItselfAlone) {
-    // Stripes across u: a footprint along u sees their mean, one along v a single stripe.
-    formats::Image8 image{64, 64, {}};
-    for (std::uint32_t i = 0; i < 64 * 64; ++i) {
-        const std::uint8_t value = i % 64 / 4 % 2 == 0 ? 255 : 0;
-        image.rgba.insert(image.rgba.end(), {value, value, value, 255});
-    }
-    const TexturePyramid pyramid = bake::make_pyramid(image, true);
-    const ImageLookup lookup{image, TextureWrap::repeat, TextureWrap::repeat, true};
-    const glm::vec2 uv(2.0f / 64, 0.5f);  // the middle of a white stripe
-    const float wide = 16.0f / 64, narrow = 1.0f / 64;
-    EXPECT_NEAR(bake::sample_footprint(lookup, pyramid, uv, moments(wide, narrow)).r, 0.5, 0.02);
-    EXPECT_NEAR(bake::sample_footprint(lookup, pyramid, uv, moments(narrow, wide)).r, 1, 0.02);
-    // Larger than the texture: the mean.
-    EXPECT_NEAR(bake::sample_footprint(lookup, pyramid, uv, moments(30, 30)).r, 0.5, 1e-5);
-}
-
 TEST(TexturePyramid, NearestSamplersGiveTexelsWhereTheImageIsMagnified) {
     formats::Image8 image{2, 1, {255, 255, 255, 255, 0, 0, 0, 255}};
     const TexturePyramid pyramid = bake::make_pyramid(image, true);

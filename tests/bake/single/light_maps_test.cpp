@@ -151,50 +151,6 @@ TEST(LightMaps, RowsDependNeitherOnThreadsNorOnHowPointsAreCut) {
     }
 }
 
-// Eight-wide look-ups leave unclear points to look_up and agree with it elsewhere.
-TEST(LightColumns, ClearAnswersAgreeWithCarefulOnes) {
-    const auto setup =
-        set_up(make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.2f)));
-    const BodyMesh mesh = make_body_mesh(setup.scene, setup.rays, 0, {});
-    const auto body = some_points(setup, 1000);
-    const NodeList list = collect_nodes(setup.rays, setup.medium, mesh.centre, body, {});
-    const GatherJob job =
-        make_gather_job(setup.rays, mesh, light_view_size(mesh), setup.medium, list);
-    const glm::vec3 w = glm::normalize(glm::vec3(0.3f, -0.5f, 0.7f));
-    LightView view;
-    render_light_view(mesh, make_light_frame(w, mesh.radius, job.size, {0.3f, 0.6f}), job.size,
-                      view);
-    ColumnAnswers answers;
-    answers.resize(list.node.size(), 3);
-    look_up_columns(view, list.points, 0, list.node.size(), job.column, answers);
-    std::size_t unclear = 0, lit = 0, differ = 0;
-    for (std::size_t i = 0; i < list.node.size(); ++i) {
-        if (answers.state[i] == ColumnAnswers::unclear) {
-            ++unclear;
-            continue;
-        }
-        const glm::vec3 p = project(view.frame, list.node[i].position - mesh.centre);
-        const LightAnswer careful = look_up(mesh, view, p, job.column.tolerance, 0.0f);
-        const bool is_lit = answers.state[i] == ColumnAnswers::lit;
-        float expected = 0;
-        if (careful.lit) {
-            const glm::vec2 slope = view.frame.pixels_per_metre * view.slope[careful.triangle];
-            const auto entry =
-                enter(1 / std::sqrt(1 + glm::dot(slope, slope)), setup.medium.boundary);
-            expected = list.node[i].weight[0] * entry.throughput *
-                       std::exp(-8.2f * careful.distance * entry.path_ratio);
-        }
-        lit += is_lit ? 1 : 0;
-        // Beside an edge the other triangle may answer, with another slope.
-        const float scale = 0.01f * job.column.throughput * list.points.weight[0][i] /
-                            std::max(list.points.importance[i], 1e-6f);
-        differ += std::abs(answers.light[0][i] - expected) > scale ? 1 : 0;
-    }
-    EXPECT_LT(unclear, list.node.size() / 5);
-    EXPECT_GT(lit, list.node.size() / 5);
-    EXPECT_LT(differ, list.node.size() / 50);
-}
-
 TEST(TexelDirections, ThoseOfTexelsAreAsGoodAsFourInEachForSmoothLights) {
     const auto setup =
         set_up(make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.8f)));
@@ -269,44 +225,6 @@ TEST(PackedRows, OneBandTakesTwoBytesAndOnlyItsOwnBits) {
     constexpr std::size_t kBytes = std::size_t{384} * 4 * 400;
     EXPECT_EQ(packed_rows_in(kBytes, 384, 4, 3), 100u);
     EXPECT_EQ(packed_rows_in(kBytes, 384, 4, 1), 200u);
-}
-
-// One band uses the arithmetic of each of three, so the bits are the same. Creases and shells make
-// views, rays and undecided look-ups all take part.
-TEST(LightMaps, OneBandIsEachOfThreeEqualBands) {
-    auto scene = make_translucent_scene({tests::make_bumpy_body(4)}, make_grey_medium(8, 0.8f));
-    for (const unsigned degrees : {0u, 1u}) {
-        auto setup = set_up(scene);
-        setup.medium.phase.lambda.assign(degrees + 1, 1.0f);
-        if (degrees > 0) {
-            setup.medium.phase.lambda[1] = 0.6f;
-        }
-        SingleMedium grey = setup.medium;
-        grey.bands = 1;
-        const BodyMesh mesh = make_body_mesh(setup.scene, setup.rays, 0, {});
-        const DirectionSet directions = make_texel_directions(8);
-        const auto gather = [&](const SingleMedium& medium) {
-            return gather_single_rows(setup.rays, mesh, light_view_size(mesh), directions, medium,
-                                      setup.points, {});
-        };
-        const SingleRows three = gather(setup.medium), one = gather(grey);
-        EXPECT_EQ(one.counts.rays, three.counts.rays);
-        EXPECT_GT(one.counts.rays, 0u);
-        EXPECT_EQ(2 * one.rows.packed[0].size(), three.rows.packed[0].size());
-        const std::size_t texels = one.rows.texels, terms = setup.medium.phase.count();
-        std::vector<float> own(terms * texels), all(3 * terms * texels);
-        for (std::size_t p = 0; p < setup.points.size(); ++p) {
-            read_packed_row(one.rows, p, own);
-            read_packed_row(three.rows, p, all);
-            for (std::size_t k = 0; k < terms; ++k) {
-                for (std::size_t c = 0; c < 3; ++c) {
-                    for (std::size_t j = 0; j < texels; ++j) {
-                        ASSERT_EQ(own[k * texels + j], all[(3 * k + c) * texels + j]);
-                    }
-                }
-            }
-        }
-    }
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "bake/scattering/entry.h"
 #include "bake/scattering/path_quadrature.h"
@@ -130,14 +129,6 @@ TEST(Entry, GrazingAndBackwardLightEnterNowhere) {
             EXPECT_TRUE(std::isfinite(e.throughput) && std::isfinite(e.path_ratio)) << eta << c;
             EXPECT_LT(e.throughput, eta == 1.0f ? 1.01f : 1e-20f) << eta << ' ' << c;
         }
-    }
-}
-
-TEST(Entry, MatchedIndexChangesNothing) {
-    for (const float c : {1e-3f, 0.1f, 0.7f, 1.0f}) {
-        const Entry<float> e = enter(c, Interface<float>{1.0f, true});
-        EXPECT_NEAR(e.throughput, 1, 3e-7);
-        EXPECT_NEAR(e.path_ratio, 1, 3e-7);
     }
 }
 

@@ -1,7 +1,6 @@
 // Slabs behind smooth boundaries that reflect and refract.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "bake/scattering/fresnel.h"
@@ -84,32 +83,6 @@ TEST(SlabBoundary, BeamsBeyondTheCriticalAngleStayOutside) {
     const SlabSolution slab = solve_behind({{1.0}, 0.5}, 0.7, 1, 0.5, 2);
     EXPECT_EQ(slab.total.reflectance[0], 1);
     EXPECT_EQ(slab.total.transmittance[0], 0);
-}
-
-TEST(SlabBoundary, PhotonsAgreeWithAddingAndDoublingByOrder) {
-    Deviations all;
-    std::uint64_t seed = 20;
-    for (const double eta : {0.75, 1.33, 2.0}) {
-        for (const double albedo : {1.0, 0.8}) {
-            for (const double depth : {0.2, 2.0}) {
-                const double cosine = 0.8;
-                bake::SlabWalkRequest request{depth, albedo, cosine, 40000, ++seed};
-                request.eta = eta;
-                const auto walk =
-                    walk_slab(bake::CosineSampler::henyey_greenstein(0.5), request, {});
-                const SlabSolution slab =
-                    solve_behind(henyey_greenstein_slab(0.5, albedo), eta, depth, cosine, 3, 48);
-                all.add(walk.reflectance, slab.total.reflectance[0]);
-                all.add(walk.absorptance,
-                        1 - slab.total.reflectance[0] - slab.total.transmittance[0]);
-                for (std::size_t n = 0; n < 3; ++n) {
-                    all.add(walk.reflected_order[n], slab.order[n].reflectance[0]);
-                    all.add(walk.transmitted_order[n], slab.order[n].transmittance[0]);
-                }
-            }
-        }
-    }
-    all.expect_normal(80);
 }
 
 TEST(SlabBoundary, ThinSlabsOfTrappedPhotonsEnd) {

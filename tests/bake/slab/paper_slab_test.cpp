@@ -15,7 +15,6 @@
 #include "bake/slab/column_model.h"
 #include "bake/slab/low_orders.h"
 #include "bake/slab/radiance_table.h"
-#include "bake/slab/slab_walk.h"
 #include "bake/slab/solve_radiance.h"
 #include "tests/bake/slab/slab_support.h"
 #include "tests/support/cloud_table.h"
@@ -114,26 +113,6 @@ TEST(PaperSlab, SharesByOrderAreThoseOfTheTable) {
     }
     if (photons.count > 0) {
         photons.expect_normal(1);
-    }
-}
-
-TEST(PaperSlab, PhotonsByOrderAgreeWithAddingAndDoubling) {
-    const bake::AngularTable& rest = paper_cloud().split.rest;
-    std::vector<double> cosine, value;
-    for (std::size_t i = rest.angle.size(); i-- > 0;) {
-        cosine.push_back(std::cos(rest.angle[i]));
-        value.push_back(rest.value[i]);
-    }
-    const double depth = 0.022628892 * 100, light = cosine_of_degrees(70);
-    const auto walk =
-        walk_slab(bake::CosineSampler::tabulated(cosine, value), {depth, 1, light, 100000, 4}, {});
-    const SlabSolution slab = solve_one(paper_cloud().modified, depth, light, 3, 32);
-    for (const auto& [order, n] :
-         {std::pair<const char*, std::size_t>{"1", 1}, {"2", 2}, {"3+", 3}}) {
-        EXPECT_NEAR(walk.reflected_order[n].share, share_of(slab, "R", order),
-                    3.5 * walk.reflected_order[n].standard_error);
-        EXPECT_NEAR(walk.transmitted_order[n].share, share_of(slab, "T", order),
-                    3.5 * walk.transmitted_order[n].standard_error);
     }
 }
 

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "tests/bake/slab/slab_support.h"
 #include "tests/support/cloud_table.h"
@@ -48,17 +47,6 @@ TEST(SolveSlab, ReproducesVanDeHulstAndTheSlabsOfTheVolumeTable) {
             EXPECT_NEAR(of(slab.total), row.value(), std::max(1e-6, 1.1 * rounding)) << row.id();
         }
     }
-}
-
-TEST(SolveSlab, AgreesWithADoublingSolverOfOtherMake) {
-    const DoubledSlab other(1.5, 0.9, 0.6, 2);
-    const SlabSolution slab = solve_one(henyey_greenstein_slab(0.6, 0.9), 1.5, 1);
-    double reflected = 0;
-    for (int i = 0; i < other.nodes(); ++i) {
-        reflected +=
-            2 * std::numbers::pi * other.weight(i) * other.cosine(i) * other.reflected_beam(i);
-    }
-    EXPECT_NEAR(reflected, slab.total.reflectance[0], 1e-6);
 }
 
 TEST(SolveSlab, WithoutAbsorptionNothingIsLost) {
@@ -143,24 +131,6 @@ TEST(SolveSlab, OrdersAddUpToTheWholeAndOrderZeroIsBeer) {
     }
 }
 
-// Isotropic: R_1 = a / 2 int_0^1 mu_l / (mu_l + mu) (1 - exp(-X_l - X)) dmu.
-TEST(SolveSlab, FirstOrderIsItsIntegral) {
-    const double depth = 0.7, light = 0.45;
-    const SlabSolution slab = solve_one({{1.0}, 0.8}, depth, light, 2);
-    const double reflected = integrate(
-        [&](double mu) {
-            return 0.4 * mu / (light + mu) * -std::expm1(-depth / light - depth / mu);
-        },
-        0, 1, 64);
-    const double transmitted = integrate(
-        [&](double mu) {
-            return 0.4 * mu / (mu - light) * (std::exp(-depth / mu) - std::exp(-depth / light));
-        },
-        0, 1, 64);
-    EXPECT_NEAR(slab.order[1].reflectance[0], reflected, 1e-6);
-    EXPECT_NEAR(slab.order[1].transmittance[0], transmitted, 1e-6);
-}
-
 // T_2 of the slab below and itself: even without 1 - R, T keeps its digits (T ~ 1 / depth).
 TEST(SolveSlab, HugeDepthsTransmitLikeTheirInverse) {
     const SlabMedium medium = henyey_greenstein_slab(0.85, 1);
@@ -180,13 +150,6 @@ TEST(SolveSlab, GrazingLightIsHalfReflectedAtOnceByAThickSlab) {
     const SlabSolution thin = solve_one(henyey_greenstein_slab(0, 1), 0.5, 1e-6, 2);
     EXPECT_NEAR(thin.order[1].transmittance[0],
                 integrate([](double mu) { return std::exp(-0.5 / mu) / 2; }, 0, 1), 1e-4);
-}
-
-TEST(SolveSlab, MoreStreamsConvergeToTheSameLight) {
-    const SlabMedium medium = henyey_greenstein_slab(0.95, 1);
-    const double best = solve_one(medium, 5, 0.4, 0, 96).total.reflectance[0];
-    EXPECT_NEAR(solve_one(medium, 5, 0.4, 0, 16).total.reflectance[0], best, 1e-3);
-    EXPECT_NEAR(solve_one(medium, 5, 0.4, 0, 48).total.reflectance[0], best, 1e-5);
 }
 
 TEST(SolveSlab, MomentsThatAreNoDensityGiveFiniteNumbers) {

@@ -36,8 +36,4 @@ inline Scene make_rod(const formats::Medium& medium) {
     return scene;
 }
 
-inline double density_in_rod(double x) {
-    return std::clamp(0.5 * (x + 1), 1.0 / 255, 1.0);
-}
-
 }  // namespace opaline::tests

@@ -38,20 +38,6 @@ TEST(WalkInVariedMedium, AFieldOfOneColorIsTheMediumOfThatScatteringColor) {
     EXPECT_NEAR(a.all, b.all, 1e-3 * b.all);
 }
 
-TEST(WalkInVariedMedium, AnEvenDensityIsTheThinnerMedium) {
-    for (const float eta : {1.0f, 1.4f}) {
-        Scene scene = make_mapped_ball(make_forward_medium(5, 0.8f, 0.5f, eta));
-        variation_of(scene).density = add_inner_texture(scene, make_even_image(102));
-        const auto varied = make_walked_scene(std::move(scene));
-        const auto plain =
-            make_walked_body(make_sphere(3), make_forward_medium(2, 0.8f, 0.5f, eta));
-        const Leaving a = walk_from(varied->space, kTop, 2, 40000);
-        const Leaving b = walk_from(plain->space, kTop, 2, 40000);
-        EXPECT_NEAR(a.all, b.all, 4 * std::hypot(a.error, b.error)) << eta;
-        EXPECT_LT(a.error, 0.01 * a.all);
-    }
-}
-
 // Where nothing is absorbed, what does not leave scattered left unscattered: e to the minus of the
 // optical depth, which the density's integral says.
 TEST(WalkInVariedMedium, LightPassesARodUnscatteredAsTheIntegralOfItsDensitySays) {
@@ -77,33 +63,6 @@ TEST(WalkInVariedMedium, FurnaceOfAlbedoOneLosesNothingWhateverTheDensity) {
                 walk_from(ball->space, start_below(at, glm::normalize(at)), 1, 1000);
             EXPECT_NEAR(leaving.all, 1, 4 * leaving.error + 0.002) << eta << ' ' << at.x;
         }
-    }
-}
-
-// Bands whose extinctions differ share walks; each has the light of walks of its own.
-TEST(WalkInVariedMedium, BandsTogetherAreWhatTheyAreApart) {
-    formats::Medium medium = make_forward_medium(4, 0.9f, 0, 1.3f);
-    medium.sigma_s = {4, 2, 1};
-    Scene scene = make_mapped_ball(medium);
-    variation_of(scene).density = add_inner_texture(scene, make_rising_image());
-    variation_of(scene).marble = formats::Marble{0.4f, {{1, 0.2f, 0.9f}, {0.3f, 1, 1}}};
-    const auto leaving_of = [](const WalkedBody& body) {
-        return walk_bands(body.space, kTop, 30000, [](const auto&) { return true; });
-    };
-    const auto together = make_walked_scene(scene, false);
-    ASSERT_EQ(together->space.bands.size(), 3u);
-    const BandsLeaving all = leaving_of(*together);
-    for (int band = 0; band < 3; ++band) {
-        Scene alone = scene;
-        formats::Medium& own = *alone.materials[0].medium;
-        const auto keep = [band](int b, float& sigma_s) { sigma_s = b == band ? sigma_s : 0; };
-        keep(0, own.sigma_s.r), keep(1, own.sigma_s.g), keep(2, own.sigma_s.b);
-        const auto apart = make_walked_scene(alone, false);
-        ASSERT_EQ(apart->space.bands.size(), 1u);
-        const BandsLeaving one = leaving_of(*apart);
-        const auto b = static_cast<std::size_t>(band);
-        EXPECT_NEAR(all.mean[b], one.mean[b], 4 * std::hypot(all.error[b], one.error[b])) << band;
-        EXPECT_LT(one.error[b], 0.01 * one.mean[b]);
     }
 }
 

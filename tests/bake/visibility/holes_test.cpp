@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 
 #include "bake/transport/ray_scene.h"
@@ -71,17 +70,6 @@ std::vector<bool> blocked_from_below(const Scene& scene, bool nearest) {
 double share(const std::vector<bool>& blocked) {
     return static_cast<double>(std::count(blocked.begin(), blocked.end(), true)) /
            static_cast<double>(blocked.size());
-}
-
-TEST(Holes, AMaskThatIsHalfOpenLetsHalfOfTheLightThrough) {
-    Scene scene = plate();
-    scene.materials[0].alpha_mode = Material::AlphaMode::mask;
-    scene.materials[0].base_color_image = 0;
-    scene.images = {checkers(16)};
-    EXPECT_NEAR(share(blocked_from_below(scene, false)), 0.5, 0.01);
-    EXPECT_NEAR(share(blocked_from_below(scene, true)), 0.5, 0.01);
-    scene.materials[0].alpha_mode = Material::AlphaMode::opaque;
-    EXPECT_EQ(share(blocked_from_below(scene, false)), 1);
 }
 
 TEST(Holes, TheShadowOfACutOutIsThatOfTheSameGeometryCut) {

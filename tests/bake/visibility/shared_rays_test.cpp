@@ -90,20 +90,6 @@ TEST(SharedRays, NarrowBarsCastTheirShadow) {
     EXPECT_NEAR((sum(open.shared) - sum(barred.shared)) / shadow, 1, 0.1);
 }
 
-TEST(SharedRays, GroupsOfNeighboursAreNeverLargerThanTheyNeedBe) {
-    const auto scene = tests::make_scene({tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 8)});
-    const auto samples = sample_surface(scene, {0}, 1000, 1, {});
-    for (std::size_t s = 0; s + kSamplesPerGroup <= samples.size(); s += kSamplesPerGroup) {
-        glm::vec3 low(1e9f), high(-1e9f);
-        for (std::size_t i = s; i < s + kSamplesPerGroup; ++i) {
-            low = glm::min(low, samples[i].position);
-            high = glm::max(high, samples[i].position);
-        }
-        // Sixteen of a thousand on a unit square: cells of 1/8 by 1/8, once cut across.
-        EXPECT_LT(glm::distance(low, high), 0.3f);
-    }
-}
-
 TEST(SharedRays, BlocksBorderOnEachOther) {
     for (const std::uint32_t n : {8u, 32u}) {
         const auto beside = make_shared_directions(n).beside;

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "bake/plan/plan_input.h"
@@ -22,13 +21,6 @@ formats::Scene glowing_blob(glm::vec3 sigma_t, glm::vec3 albedo, float g, glm::v
     blob.albedo = {albedo.x, albedo.y, albedo.z};
     tests::make_it_glow(blob, own);
     return tests::scene_of(std::move(blob));
-}
-
-Knobs glow_knobs() {
-    Knobs knobs = tests::knobs_for(Quality::preview);
-    knobs.cubemap_size = 8;
-    knobs.set(kVolumeSpacing, 4);
-    return knobs;
 }
 
 // At the middle of a blob that absorbs, light L_e (1 - exp(-depth)) comes from all directions.
@@ -62,36 +54,14 @@ TEST(GlowWalks, TheirLightIsScatteredTowardWhereItGoes) {
     EXPECT_NEAR(found[2].x, 0, 0.05f * found[0].x);
 }
 
-TEST(BakeGlow, InEquilibriumWithEvenLightAScatteringVolumeCannotBeSeen) {
-    for (const float g : {0.0f, 0.5f}) {
-        const formats::Scene scene = glowing_blob({1, 3, 6}, {0.9f, 0.7f, 0.4f}, g, glm::vec3(1));
-        const formats::Volumes volumes = tests::bake_volumes_of(scene, glow_knobs());
-        ASSERT_EQ(volumes.glow.record.size(), 1u);
-        runtime::LightVector white = runtime::project_cubemap(
-            std::vector<formats::Rgb>(formats::cubemap_texels(8), {1, 1, 1}), 8);
-        const runtime::VolumeLight lit = runtime::relight_volumes(volumes.view(), white);
-        const runtime::LitVolumes ready = runtime::light_volumes(volumes.view(), lit);
-        double worst = 0;
-        for (const float off : {0.0f, 0.3f, 0.7f, 1.0f}) {
-            const runtime::MarchResult seen =
-                runtime::march_volumes(ready, {{-4, off, 0.1f}, {1, 0, 0}});
-            for (const float total :
-                 {seen.radiance.r + seen.transmittance.r, seen.radiance.g + seen.transmittance.g,
-                  seen.radiance.b + seen.transmittance.b}) {
-                worst = std::max(worst, std::abs(static_cast<double>(total) - 1));
-            }
-        }
-        EXPECT_LT(worst, 0.04) << "g " << g;
-    }
-}
-
 TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
     formats::Scene scene = glowing_blob({1, 1, 1}, glm::vec3(0), 0, {3, 2, 1});
     formats::Volume& volume = scene.volumes[0];
     for (float& value : volume.density.value) {
         value = value < 0.9f ? 0 : value;
     }
-    const formats::Volumes volumes = tests::bake_volumes_of(scene, glow_knobs());
+    const formats::Volumes volumes =
+        tests::bake_volumes_of(scene, tests::small_knobs(Quality::preview, 4));
     const formats::VolumeRecord& record = volumes.records.at(0);
     ASSERT_EQ(volumes.glow.record.size(), 1u);
     const formats::GlowRecord& glow = volumes.glow.record[0];
@@ -114,8 +84,7 @@ TEST(BakeGlow, RadianceIsKeptToAThousandthAndThereWhereNoDensityIs) {
 }
 
 TEST(PlanGlow, LightUnderTheBudgetIsLeftOutAndWhatIsLeftOutIsDarker) {
-    Knobs knobs = glow_knobs();
-    knobs.set(kVolumeSpacing, 8);
+    const Knobs knobs = tests::small_knobs(Quality::preview, 8);
     for (const float own : {2e-4f, 1.0f}) {
         formats::Scene scene = glowing_blob(glm::vec3(0.3f), glm::vec3(0.5f), 0, glm::vec3(own));
         const VolumePlan plan = plan_volumes(scene, knobs);
@@ -172,8 +141,7 @@ SeenGlow look_at_glow(const formats::Scene& scene, Knobs knobs) {
 // 1 - e^-tau. From below: what is left out is darker than the bound, which is below the budget.
 // From above: what is kept is there, and no 60th of the bound.
 TEST(PlanGlow, ScatteredLightOfItsOwnIsLeftOutByABoundThatHoldsAndIsNotVain) {
-    Knobs knobs = glow_knobs();
-    knobs.set(kVolumeSpacing, 8);
+    const Knobs knobs = tests::small_knobs(Quality::preview, 8);
     for (const float depth : {0.05f, 0.3f, 2.0f}) {
         const auto make = [&](float own) {
             formats::Volume ball =

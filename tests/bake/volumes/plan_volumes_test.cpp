@@ -131,22 +131,5 @@ TEST(PlanVolumes, EvenDensityTakesTheHomogeneousPathAndNoOtherDoes) {
     EXPECT_EQ(less.nodes, more.nodes);
 }
 
-// The same from the other side: what is left out changes nothing but noise.
-TEST(PlanVolumes, TheHomogeneousPathFindsTheLightOfTheGrid) {
-    Knobs knobs = tests::knobs_for(Quality::draft);
-    knobs.set(kVolumeSpacing, 8);
-    knobs.set(kVolumeWalks, 200);
-    double light[2] = {};
-    for (const bool is_even : {false, true}) {
-        const formats::Scene scene = tests::scene_of(box_of_cells(is_even ? 0 : 1e-4));
-        const formats::Volumes volumes = tests::bake_volumes_of(scene, knobs);
-        const formats::VolumeRecord& record = volumes.records.at(0);
-        for (std::uint32_t row = 0; row < record.node_count * record.terms(); ++row) {
-            light[is_even ? 1 : 0] += tests::integrate_row(volumes.rows, record, row);
-        }
-    }
-    EXPECT_NEAR(light[1] / light[0], 1, 0.005);
-}
-
 }  // namespace
 }  // namespace opaline::bake

@@ -19,13 +19,6 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-Knobs sent_knobs(double spacing = 4) {
-    Knobs knobs = tests::knobs_for(Quality::preview);
-    knobs.cubemap_size = 8;
-    knobs.set(kVolumeSpacing, spacing);
-    return knobs;
-}
-
 // A scene's volumes, baked, among surfaces that its primitives are.
 struct SentScene {
     formats::Scene scene;
@@ -55,7 +48,7 @@ struct SentScene {
 SentScene ball_of_smoke(float sigma_t, float albedo, float g, double spacing = 4) {
     return {
         tests::scene_of(tests::make_volume(tests::make_ball_grid(1, 0.125), sigma_t, albedo, g)),
-        sent_knobs(spacing)};
+        tests::small_knobs(Quality::preview, spacing)};
 }
 
 // Of even light of radiance 1, in one band.
@@ -133,7 +126,7 @@ TEST(SentLight, SmokeBehindAWallOrBelowTheHorizonSendsNothing) {
     formats::Scene scene =
         tests::make_scene({tests::make_quad({-20, -1.2f, -20}, {0, 0, 40}, {40, 0, 0})});
     scene.volumes.push_back(tests::make_volume(tests::make_ball_grid(1, 0.125), 2, 1, 0));
-    const SentScene smoke(std::move(scene), sent_knobs());
+    const SentScene smoke(std::move(scene), tests::small_knobs(Quality::preview, 4));
     const auto brightest = [&](const Receiver& at) {
         const std::vector<float> rows = smoke.at(at).rows;
         return *std::ranges::max_element(rows);
@@ -147,7 +140,8 @@ TEST(SentLight, SmokeBehindAWallOrBelowTheHorizonSendsNothing) {
 TEST(SentLight, SmokeThatAbsorbsByColourSendsColours) {
     formats::Volume volume = tests::make_volume(tests::make_ball_grid(1, 0.125), 2, 1, 0);
     volume.albedo = {1, 0.5f, 0};
-    const SentScene smoke(tests::scene_of(std::move(volume)), sent_knobs());
+    const SentScene smoke(tests::scene_of(std::move(volume)),
+                          tests::small_knobs(Quality::preview, 4));
     const SentIrradiance sent = smoke.at({{0, -1.5f, 0}, {0, 1, 0}});
     ASSERT_EQ(sent.rows.size(), 3u * 384u);
     EXPECT_GT(under_even_light(sent, 0), 3 * under_even_light(sent, 1));
@@ -163,7 +157,7 @@ TEST(PlanSentLight, NoSurfaceReceivesMoreThanTheBoundAndTheNearestOneAGoodPartOf
     for (const auto& [sigma_t, share] : {std::pair(0.05f, 0.07), std::pair(8.0f, 0.2)}) {
         scene.volumes = {tests::make_volume(tests::make_ball_grid(1, 0.125), sigma_t, 1, 0)};
         const double bound = largest_sent_light(scene, scene.volumes[0]);
-        const SentScene smoke(scene, sent_knobs());
+        const SentScene smoke(scene, tests::small_knobs(Quality::preview, 4));
         const double sent =
             under_even_light(smoke.at({{0, -distance + 1e-4f, 0}, {0, 1, 0}})) / kPi;
         EXPECT_LE(sent, bound);
@@ -176,7 +170,7 @@ TEST(PlanSentLight, ItIsLeftOutWhereItIsDarkOrFarAwayOrNothingReceivesIt) {
         formats::Scene scene =
             tests::make_scene({tests::make_quad({-1, -distance, -1}, {0, 0, 2}, {2, 0, 0})});
         scene.volumes = {tests::make_volume(tests::make_ball_grid(1, 0.125), sigma_t, 0.9f, 0)};
-        return plan_volumes(scene, sent_knobs());
+        return plan_volumes(scene, tests::small_knobs(Quality::preview, 4));
     };
     const VolumePlan near = decide(2, 1.5f);
     ASSERT_EQ(near.entries.size(), 4u);
@@ -189,7 +183,7 @@ TEST(PlanSentLight, ItIsLeftOutWhereItIsDarkOrFarAwayOrNothingReceivesIt) {
     EXPECT_FALSE(lights_surfaces(decide(2e-4f, 1.5f).entries));
     const formats::Scene alone =
         tests::scene_of(tests::make_volume(tests::make_ball_grid(1, 0.125), 2, 0.9f, 0));
-    EXPECT_EQ(plan_volumes(alone, sent_knobs()).entries.size(), 2u);
+    EXPECT_EQ(plan_volumes(alone, tests::small_knobs(Quality::preview, 4)).entries.size(), 2u);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
-#include "formats/opal/detail_codes.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {
@@ -99,9 +98,7 @@ TEST(ShareDetails, ARowThatIsNotANumberStaysSo) {
 TEST(ShareDetails, NodesThatAreSeenKeepMoreThanThoseAtTheEdge) {
     formats::Scene scene =
         tests::scene_of(tests::make_volume(tests::make_blob(0.5, 1.0 / 6), 4, 0.9f, 0.5f));
-    Knobs knobs = tests::knobs_for(Quality::preview);
-    knobs.cubemap_size = 8;
-    knobs.set(kVolumeSpacing, 2);
+    Knobs knobs = tests::small_knobs(Quality::preview, 2);
     knobs.set(kVolumeWalks, 32);
     knobs.set(kVolumeCoefficients, 96);
     knobs.set(kVolumeTerms, 4);

@@ -12,6 +12,7 @@
 #include "bake/effects/effects.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/bake_volumes.h"
+#include "bake/volumes/volume_knobs.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/support/volumes.h"
@@ -33,6 +34,14 @@ inline bake::Knobs knobs_for(bake::Quality quality) {
     bake::BakeOptions options;
     options.quality = quality;
     return *bake::resolve_knobs(bake::all_effects(), options);
+}
+
+/// For bakes of small volumes: rows of 8 x 8 texels a face, nodes `spacing` voxels apart.
+inline bake::Knobs small_knobs(bake::Quality quality, double spacing) {
+    bake::Knobs knobs = knobs_for(quality);
+    knobs.cubemap_size = 8;
+    knobs.set(bake::kVolumeSpacing, spacing);
+    return knobs;
 }
 
 /// What a bake makes of a scene's volumes; `surfaces`: those of the scene.

@@ -19,13 +19,6 @@ formats::Scene scene_of_blob(float sigma_t, float albedo, float g) {
     return tests::scene_of(tests::make_volume(tests::make_blob(0.5, 0.125), sigma_t, albedo, g));
 }
 
-Knobs knobs_of_draft() {
-    Knobs knobs = tests::knobs_for(Quality::draft);
-    knobs.cubemap_size = 8;
-    knobs.set(kVolumeSpacing, 4);
-    return knobs;
-}
-
 VolumeWork work_of(const formats::Scene& scene, const Knobs& knobs) {
     return count_volume_work(scene, plan_volumes(scene, knobs).layouts, knobs).front();
 }
@@ -37,7 +30,7 @@ void expect_within(double predicted, double counted, double factor) {
 
 TEST(VolumeWork, NodesAndRowsAreThoseOfTheFile) {
     const formats::Scene scene = scene_of_blob(4, 0.9f, 0.5f);
-    const Knobs knobs = knobs_of_draft();
+    const Knobs knobs = tests::small_knobs(Quality::draft, 4);
     const VolumeWork work = work_of(scene, knobs);
     const formats::Volumes volumes = tests::bake_volumes_of(scene, knobs);
     EXPECT_EQ(work.nodes, static_cast<double>(volumes.node.size()));
@@ -52,7 +45,7 @@ TEST(VolumeWork, FlightsAreThoseOfAllNodesWithinAFactorOfTwo) {
         for (const float albedo : {0.5f, 0.99f}) {
             for (const float g : {0.0f, 0.85f}) {
                 const formats::Scene scene = scene_of_blob(sigma_t, albedo, g);
-                const Knobs knobs = knobs_of_draft();
+                const Knobs knobs = tests::small_knobs(Quality::draft, 4);
                 const VolumeWork work = work_of(scene, knobs);
                 const DensitySpace space = make_density_space(scene);
                 const formats::Volume& volume = scene.volumes[0];
@@ -97,7 +90,7 @@ TEST(VolumeWork, WalksWithoutAWayOutCollideAsOftenAsRouletteLetsThem) {
 
 TEST(VolumeWork, StepsAreThoseOfAllNodesWithinAFactorOfTwo) {
     const formats::Scene scene = scene_of_blob(4, 0.9f, 0);
-    const Knobs knobs = knobs_of_draft();
+    const Knobs knobs = tests::small_knobs(Quality::draft, 4);
     const VolumeWork work = work_of(scene, knobs);
     const DensitySpace space = make_density_space(scene);
     const formats::Volume& volume = scene.volumes[0];
@@ -119,7 +112,7 @@ TEST(VolumeWork, StepsAreThoseOfAllNodesWithinAFactorOfTwo) {
 
 TEST(VolumeWork, TimeGrowsWithWalksAndBytesWithCoefficients) {
     const formats::Scene scene = scene_of_blob(4, 0.9f, 0.5f);
-    Knobs knobs = knobs_of_draft();
+    Knobs knobs = tests::small_knobs(Quality::draft, 4);
     const VolumeWork few = work_of(scene, knobs);
     const double seconds = scattering_work({knobs}, few).shared;
     const double once = attenuated_row_bytes(few, knobs), often = scattered_row_bytes(few, knobs);

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
@@ -141,21 +140,6 @@ TEST(BallWalk, LeavesDenseBodiesAsWalksWithoutBallsDo) {
     const auto slab = make_walked_body(make_wide_slab(12), make_forward_medium(1, 0.99f, 0, 1.4f));
     const BothLeave both = leave_both_ways(*slab, start_below({0, 0, 0}, {0, 1, 0}), 20000);
     expect_alike(both, "slab");
-}
-
-// 4/3 / (tau' + 2 * 0.7104) crosses, as in walk_test.cpp; here by way of large balls alone.
-TEST(BallWalk, ConservativeSlabTransmitsByItsTransportThicknessWhateverTheMeanCosine) {
-    for (const float g : {-0.5f, 0.0f, 0.9f}) {
-        const float thickness = 24;
-        const auto slab =
-            make_walked_body(make_wide_slab(thickness), make_forward_medium(1 / (1 - g), 1, g, 1));
-        bake::add_balls(slab->space, 1e6, 5, {});
-        const Leaving leaving = walk_from(slab->space, start_below({0, 0, 0}, {0, 1, 0}), 1, 30000);
-        EXPECT_NEAR(leaving.all, 1, 4 * leaving.error + 0.001) << g;
-        const double expected = 4.0 / 3 / (static_cast<double>(thickness) + 1.4208);
-        EXPECT_NEAR(leaving.below, expected, 4 * std::sqrt(expected / 30000)) << g;
-        EXPECT_GT(leaving.counts.jumps, 30000u);
-    }
 }
 
 // Bands that fly differently, one that is not scattered in the core, through a coat and a core.

@@ -6,31 +6,22 @@
 #include <numbers>
 
 #include "bake/scattering/phase.h"
+#include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::bake {
 namespace {
 
-using Type = formats::PhaseFunction::Type;
-
-formats::PhaseFunction make(Type type, float g, float rms_angle) {
-    formats::PhaseFunction function;
-    function.type = type;
-    function.g = g;
-    function.rms_angle = rms_angle;
-    return function;
-}
-
 // Mean of the cosine and of its square: by sampling, and by quadrature of the density.
 TEST(PhaseTable, SampledCosinesHaveTheMomentsOfTheDensity) {
     std::vector<formats::PhaseFunction> functions{
-        make(Type::isotropic, 0, 0), make(Type::rayleigh, 0, 0), make(Type::gaussian, 0, 0.05f),
-        make(Type::gaussian, 0, 0.8f)};
-    for (const float g : {-0.99f, -0.3f, 1e-5f, 0.5f, 0.99f}) {
-        functions.push_back(make(Type::henyey_greenstein, g, 0));
+        {},
+        tests::rayleigh(),
+        tests::gaussian(0.05f),
+        tests::gaussian(0.8f),
+        tests::table_of({-1, 0, 0.9f, 1}, {0.1f, 0, 0.1f, 2})};
+    for (const double g : {-0.99, -0.3, 1e-5, 0.5, 0.99}) {
+        functions.push_back(tests::hg(g));
     }
-    functions.push_back(make(Type::tabulated, 0, 0));
-    functions.back().cosine = {-1, 0, 0.9f, 1};
-    functions.back().value = {0.1f, 0, 0.1f, 2};
     for (const formats::PhaseFunction& function : functions) {
         const PhaseTable table = make_phase_table(function);
         const PhaseDensity density = make_phase_density(function);

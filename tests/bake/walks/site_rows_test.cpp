@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "bake/effects/multiple/walks/walk_stage.h"
@@ -31,16 +33,33 @@ struct WalkedBall {
     double eta = 1, escape = 1;
 };
 
-WalkedBall make_ball(float sigma_t, float albedo, float eta = 1.3f) {
+WalkedBall make_body(Primitive shape, const formats::Medium& medium, std::uint32_t samples) {
     WalkedBall ball;
-    ball.eta = static_cast<double>(eta);
-    ball.body = make_walked_body(make_sphere(3), make_forward_medium(sigma_t, albedo, 0, eta));
-    ball.samples = bake::sample_surface(ball.body->scene, {0}, 1500, 0, {});
+    ball.body = make_walked_body(std::move(shape), medium);
+    ball.eta = static_cast<double>(ball.body->space.eta);
+    ball.samples = bake::sample_surface(ball.body->scene, {0}, samples, 0, {});
     const auto sky = bake::RayScene::build({}, 1).value();
     ball.transport =
         bake::bake_sample_transport(sky, ball.samples, {kCubemap, kAll, ball.eta, true}, {});
     ball.escape = 1 - bake::fresnel_moments(ball.eta).external;
     return ball;
+}
+
+WalkedBall make_ball(float sigma_t, float albedo, float eta = 1.3f) {
+    return make_body(make_sphere(3), make_forward_medium(sigma_t, albedo, 0, eta), 1500);
+}
+
+bake::ExitLight light_of(const WalkedBall& ball, bool has_cells = false) {
+    std::optional<bake::ExitCells> cells;
+    if (has_cells) cells.emplace(ball.samples, kCubemap, bake::make_exit_lobe(ball.eta));
+    return {ball.samples, ball.transport.rows, std::move(cells), ball.escape};
+}
+
+bake::WalkStageOptions rows_within(double radius, double walks, std::uint32_t views) {
+    return {.radius = radius,
+            .walks = walks,
+            .views = views,
+            .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}};
 }
 
 // Of the row under white light, over 4 pi.
@@ -56,24 +75,6 @@ double white(std::span<const float> haar_row) {
         sum += light[k] * static_cast<double>(haar_row[k]) / (4 * std::numbers::pi);
     }
     return sum;
-}
-
-bake::WalkStage walk(const WalkedBall& ball, unsigned threads, bool inside,
-                     std::uint32_t views = 1) {
-    const bake::ExitLight light(
-        ball.samples, ball.transport.rows,
-        bake::ExitCells(ball.samples, kCubemap, bake::make_exit_lobe(ball.eta)), ball.escape);
-    bake::Context context;
-    context.threads = threads;
-    const auto sites = bake::place_sites(ball.body->space, {300, 0.4, false}, 0, context);
-    return bake::take_walks(
-        ball.body->space, light, sites,
-        {.radius = 0.4,
-         .walks = 30000,
-         .is_inside = inside,
-         .views = views,
-         .rows = {.cubemap_size = kCubemap, .kept = 200, .bands = 1, .seed = 0, .orders = {1}}},
-        {}, context);
 }
 
 bake::BodyPoint body_point(const SurfaceSample& at) {
@@ -105,7 +106,12 @@ void add_rows(const bake::WalkStage& stage, const bake::BodyPoint& point, std::s
 TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
     const WalkedBall ball = make_ball(20, 1);
     for (const bool inside : {false, true}) {
-        const bake::WalkStage stage = walk(ball, 2, inside);
+        const auto sites = bake::place_sites(ball.body->space, {300, 0.4, false}, 0, {});
+        bake::WalkStageOptions options = rows_within(0.4, 30000, 1);
+        options.is_inside = inside;
+        options.rows.kept = 200;
+        const bake::WalkStage stage =
+            bake::take_walks(ball.body->space, light_of(ball, true), sites, options, {}, {});
         double sum = 0;
         constexpr int kPoints = 50;
         for (int i = 0; i < kPoints; ++i) {
@@ -124,16 +130,12 @@ TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
 // Walks begin where some receiver reads their row; the rows of receivers are the same, bit by bit.
 TEST(SiteRows, SitesThatNoReceiverReadsTakeNoWalks) {
     const WalkedBall ball = make_ball(20, 0.9f);
-    const bake::ExitLight light(ball.samples, ball.transport.rows, std::nullopt, ball.escape);
+    const bake::ExitLight light = light_of(ball);
     constexpr std::uint32_t kSites = 2000;
     const auto sites = bake::place_sites(ball.body->space, {kSites, 0.1, false}, 0, {});
     const std::vector<bake::BodyPoint> served{body_point(ball.samples[3]),
                                               body_point(ball.samples[700])};
-    bake::WalkStageOptions options{
-        .radius = 0.1,
-        .walks = 4 * kSites,
-        .views = 4,
-        .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}};
+    bake::WalkStageOptions options = rows_within(0.1, 4 * kSites, 4);
     const bake::WalkStage all = bake::take_walks(ball.body->space, light, sites, options, {}, {});
     options.served = served;
     const bake::WalkStage some = bake::take_walks(ball.body->space, light, sites, options, {}, {});
@@ -157,21 +159,16 @@ TEST(SiteRows, SitesThatNoReceiverReadsTakeNoWalks) {
 // their lobes taken out, sixteen would leave 0.9 of the first degree and more of the second.
 TEST(SiteRows, NoViewDiffersInAnEvenSkyWhereNothingIsAbsorbed) {
     const WalkedBall ball = make_ball(100, 1, 1);
-    const bake::ExitLight light(ball.samples, ball.transport.rows, std::nullopt, ball.escape);
+    const bake::ExitLight light = light_of(ball);
     constexpr std::size_t kSites = 100;
     const auto sites = bake::place_sites(ball.body->space, {kSites, 0.4, false}, 0, {});
-    const bake::WalkStage stage = bake::take_walks(
-        ball.body->space, light, sites,
-        {.radius = 0.4,
-         .walks = 16 * kSites,
-         .views = 9,
-         .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}},
-        {}, {});
+    const bake::WalkStage stage =
+        bake::take_walks(ball.body->space, light, sites, rows_within(0.4, 16 * kSites, 9), {}, {});
     const auto rms = [&](std::uint32_t first, std::uint32_t end) {
         double sum = 0;
         for (std::size_t site = 0; site < kSites; ++site) {
             for (std::uint32_t view = first; view < end; ++view) {
-                std::vector<float> row(formats::cubemap_texels(kCubemap));
+                std::vector<float> row(kAll);
                 bake::add_site_row(stage.rows, site, view, glm::vec3(1), row);
                 sum += std::pow(4 * std::numbers::pi * white(row), 2) / kSites;
             }
@@ -186,18 +183,14 @@ TEST(SiteRows, NoViewDiffersInAnEvenSkyWhereNothingIsAbsorbed) {
 // of one another leave 0.40 of it, these 0.35.
 TEST(SiteRows, OfWalksThatAreSpreadEvenlyHaveLessNoise) {
     const WalkedBall ball = make_ball(100, 0.5f, 1);
-    const bake::ExitLight light(ball.samples, ball.transport.rows, std::nullopt, ball.escape);
+    const bake::ExitLight light = light_of(ball);
     constexpr std::size_t kSites = 200;
     const auto sites = bake::place_sites(ball.body->space, {kSites, 0.4, false}, 0, {});
-    const bake::WalkStage stage = bake::take_walks(
-        ball.body->space, light, sites,
-        {.radius = 0.4,
-         .walks = 16 * kSites,
-         .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}},
-        {}, {});
+    const bake::WalkStage stage =
+        bake::take_walks(ball.body->space, light, sites, rows_within(0.4, 16 * kSites, 1), {}, {});
     double sum = 0, squares = 0;
     for (std::size_t site = 0; site < kSites; ++site) {
-        std::vector<float> row(formats::cubemap_texels(kCubemap));
+        std::vector<float> row(kAll);
         bake::add_site_row(stage.rows, site, 0, glm::vec3(1), row);
         const double radiance = 4 * std::numbers::pi * white(row);
         sum += radiance / kSites;
@@ -215,24 +208,13 @@ TEST(SiteRows, OfSitesInsideShowTheEdgeOfAThinBladeAsItsOwnWalksDo) {
     for (glm::vec3& p : blade.position) {
         p *= glm::vec3(0.5f * kThickness, 3, 3);
     }
-    WalkedBall body;
-    body.body = make_walked_body(std::move(blade), make_forward_medium(1, 0.95f, 0, 1.3f));
-    body.eta = static_cast<double>(body.body->space.eta);
-    body.samples = bake::sample_surface(body.body->scene, {0}, 4000, 0, {});
-    const auto sky = bake::RayScene::build({}, 1).value();
-    body.transport =
-        bake::bake_sample_transport(sky, body.samples, {kCubemap, kAll, body.eta, true}, {});
-    body.escape = 1 - bake::fresnel_moments(body.eta).external;
-    const bake::ExitLight light(body.samples, body.transport.rows, std::nullopt, body.escape);
+    const WalkedBall body =
+        make_body(std::move(blade), make_forward_medium(1, 0.95f, 0, 1.3f), 4000);
+    const bake::ExitLight light = light_of(body);
     const auto sites = bake::place_sites(body.body->space, {1500, 1, false}, 0, {});
-    const bake::WalkStage stage = bake::take_walks(
-        body.body->space, light, sites,
-        {.radius = 1,
-         .walks = 1.5e6,
-         .is_inside = true,
-         .views = 4,
-         .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}},
-        {}, {});
+    bake::WalkStageOptions options = rows_within(1, 1.5e6, 4);
+    options.is_inside = true;
+    const bake::WalkStage stage = bake::take_walks(body.body->space, light, sites, options, {}, {});
     // The cube map's own error: what an exit's light is under white, instead of 1.
     double unit = 0;
     for (std::uint32_t j = 0; j < body.samples.size(); ++j) {
@@ -276,23 +258,12 @@ TEST(SiteRows, OfSitesInsideShowTheEdgeOfAThinBladeAsItsOwnWalksDo) {
 // over the horizon, leaves again after few scatterings, and exits that forget all of their
 // direction but a slope see .73 of it.
 TEST(SiteRows, OfAnAbsorbingBallsDarkEndSeeTheLightOverItsHorizon) {
-    WalkedBall ball;
-    ball.body = make_walked_body(make_sphere(4, 5), make_forward_medium(1, 0.5f, 0, 1));
-    ball.samples = bake::sample_surface(ball.body->scene, {0}, 8000, 0, {});
-    const auto sky = bake::RayScene::build({}, 1).value();
-    ball.transport = bake::bake_sample_transport(sky, ball.samples, {kCubemap, kAll, 1, true}, {});
-    const bake::ExitLight light(ball.samples, ball.transport.rows,
-                                bake::ExitCells(ball.samples, kCubemap, bake::make_exit_lobe(1)),
-                                1);
+    const WalkedBall ball = make_body(make_sphere(4, 5), make_forward_medium(1, 0.5f, 0, 1), 8000);
     const auto sites = bake::place_sites(ball.body->space, {8000, 0.8, false}, 0, {});
-    const bake::WalkStage stage = bake::take_walks(
-        ball.body->space, light, sites,
-        {.radius = 0.8,
-         .walks = 4e5,
-         .is_inside = true,
-         .views = 1,
-         .rows = {.cubemap_size = kCubemap, .kept = kAll, .bands = 1, .seed = 0, .orders = {1}}},
-        {}, {});
+    bake::WalkStageOptions options = rows_within(0.8, 4e5, 1);
+    options.is_inside = true;
+    const bake::WalkStage stage =
+        bake::take_walks(ball.body->space, light_of(ball, true), sites, options, {}, {});
     const std::vector<double> solid_angle = formats::texel_solid_angles(kCubemap);
     std::vector<double> above;
     for (std::uint32_t k = 0; k < kAll; ++k) {
@@ -332,24 +303,23 @@ TEST(SiteRows, OfAnAbsorbingBallsDarkEndSeeTheLightOverItsHorizon) {
 // What is subtracted before truncation is missing from the rows.
 TEST(SiteRows, SubtractedRowsAreLeftOut) {
     const WalkedBall ball = make_ball(5, 0.9f);
-    const bake::ExitLight light(ball.samples, ball.transport.rows, std::nullopt, ball.escape);
+    const bake::ExitLight light = light_of(ball);
     const auto sites = bake::place_sites(ball.body->space, {50, 0.4, false}, 0, {});
+    bake::WalkStageOptions options = rows_within(0.4, 500, 1);
+    options.rows.kept = 400;
+    options.rows.orders = {};
     const auto take = [&](float share) {
-        return bake::take_walks(
-            ball.body->space, light, sites,
-            {.radius = 0.4,
-             .walks = 500,
-             .rows = {.cubemap_size = kCubemap, .kept = 400, .bands = 1, .seed = 0, .orders = {}}},
-            [share](std::size_t, std::span<float> rgbx) {
-                for (float& value : rgbx) {
-                    value *= share;
-                }
-            },
-            {});
+        return bake::take_walks(ball.body->space, light, sites, options,
+                                [share](std::size_t, std::span<float> rgbx) {
+                                    for (float& value : rgbx) {
+                                        value *= share;
+                                    }
+                                },
+                                {});
     };
     const bake::WalkStage whole = take(1), half = take(0.5f);
     ASSERT_FALSE(whole.rows.blocks.empty());
-    std::vector<float> a(formats::cubemap_texels(kCubemap)), b(a.size());
+    std::vector<float> a(kAll), b(kAll);
     bake::add_site_row(whole.rows, 7, 0, glm::vec3(0.5f), a);
     bake::add_site_row(half.rows, 7, 0, glm::vec3(1), b);
     EXPECT_EQ(a, b);

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "bake/base/frame.h"
 #include "bake/scattering/fresnel.h"
@@ -116,30 +115,6 @@ TEST(ViewFit, MeanOverTheViewsIsThatOfTheFirstRowWhateverTheOthersAre) {
             EXPECT_NEAR(mean, 0, 1e-4) << eta << " " << r;
         }
     }
-}
-
-TEST(ViewFit, SecondHarmonicsAreTheQuadraticFormsOfTheFile) {
-    const glm::vec3 w = glm::normalize(glm::vec3(0.2f, 0.9f, -0.6f));
-    std::array<float, 9> value{};
-    formats::eval_spherical_harmonics({w.x, w.y, w.z}, value);
-    for (std::uint32_t k = 4; k < 9; ++k) {
-        EXPECT_NEAR(static_cast<double>(glm::dot(w, second_harmonic(k) * w)),
-                    static_cast<double>(value[k]), 1e-6)
-            << k;
-    }
-}
-
-// p = 2 c at index 1: moments by hand.
-TEST(ViewFit, MomentsAtIndexOneAreThoseOfACosine) {
-    const ViewFit fit = make_view_fit(1);
-    EXPECT_NEAR(fit.mean, 2.0 / 3, 1e-9);
-    EXPECT_NEAR(fit.variance, 1.0 / 18, 1e-9);
-    EXPECT_NEAR(fit.across, 0.25, 1e-9);
-    EXPECT_NEAR(fit.level, 0.25, 1e-9);
-    EXPECT_NEAR(fit.slope, 1.8, 1e-9);
-    EXPECT_NEAR(fit.middle, 8.0 / 15, 1e-9);
-    EXPECT_NEAR(fit.around, 1.0 / 3, 1e-9);
-    EXPECT_EQ(fit.steepest, 0);
 }
 
 }  // namespace
