@@ -22,23 +22,23 @@ std::uint32_t details_of(const RowEncoder& encoder) {
     return encoder.selector.kept - std::min(encoder.selector.kept, formats::kCubeFaces);
 }
 
-// Of each row: its receiver's sum of squared face averages, to the power of -1/4.
+// Of each row: its sum of squared face averages, to the power of -1/4.
 std::vector<float> weigh_rows(const formats::SparseRows& rows, const RowShape& shape) {
-    // Of the mean square: receivers that get hardly any light are not worth ever more details.
+    // Of the mean square: rows that hold hardly any light are not worth ever more details.
     constexpr double kDark = 1e-4;
     const std::size_t count = rows.row_offset.size() - 1;
-    std::vector<double> square(count / shape.terms);
+    std::vector<double> square(count);
     for (std::size_t i = 0; i < rows.average_code.size(); ++i) {
         const std::size_t band_row = i / formats::kCubeFaces;
         const double value = static_cast<double>(rows.average_scale[band_row]) *
                              static_cast<double>(rows.average_code[i]);
-        square[band_row / (shape.terms * shape.bands)] += std::isfinite(value) ? value * value : 0;
+        square[band_row / shape.bands] += std::isfinite(value) ? value * value : 0;
     }
     const double mean = std::accumulate(square.begin(), square.end(), 0.0) /
                         static_cast<double>(std::max<std::size_t>(1, square.size()));
     std::vector<float> weight(count, 1.0f);
     for (std::size_t row = 0; row < count && mean > 0; ++row) {
-        const double own = square[row / shape.terms] / mean;
+        const double own = square[row] / mean;
         weight[row] = static_cast<float>(std::pow(own + kDark, -0.25));
     }
     return weight;

@@ -32,9 +32,10 @@ struct RowShape {
 /// ones of many that are equally large, and a floor in the sun shows it as blotches with edges.
 /// With one least score for all, what is the same in two rows is kept or dropped in both.
 ///
-/// A row's score is divided by the square root of the size of its receiver's averages, the RMS
-/// radiance under even light: the eye, as sRGB, sees about the square root of light, whose error is
-/// dx / (2 sqrt x).
+/// A row's score is divided by the square root of the size of its averages, the RMS radiance under
+/// even light: the eye, as sRGB, sees about the square root of light, whose error is dx / (2 sqrt
+/// x). Terms of view weigh by their own size: views lie in half of the sphere, where terms are not
+/// orthogonal, and small ones need more than Parseval's share (glass of `playing-pieces`).
 formats::SparseRows share_rows(formats::SparseRows rows, const RowShape& shape,
                                const RowEncoder& encoder);
 
