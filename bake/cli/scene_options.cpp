@@ -154,8 +154,8 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
         ->option_text("N");
     command
         .add_option("--coefficients", options.bake.coefficients,
-                    "wavelet coefficients kept per receiver, 7 or more, or `all`; default as the "
-                    "quality says")
+                    "wavelet coefficients kept per receiver in the mean over a mesh, 7 or more, or "
+                    "`all`; default as the quality says")
         ->transform(CLI::Validator(parse_coefficients, ""))
         ->option_text("M");
     for (const bake::EffectDescriptor& effect : bake::all_effects().effects) {

@@ -10,20 +10,6 @@
 namespace opaline::bake {
 namespace {
 
-// Where the last `row.terms` rows stand.
-formats::RowRange last_rows(const DenseRow& row, const formats::SparseRows& stored) {
-    const auto rows = static_cast<std::uint32_t>(stored.row_offset.size() - 1);
-    formats::RowRange range;
-    range.first_row = rows - row.terms;
-    range.rows = row.terms;
-    range.bands = row.bands;
-    range.first_band_row =
-        static_cast<std::uint32_t>(stored.detail_scale.size()) - row.terms * row.bands;
-    const std::uint64_t details = stored.row_offset[rows] - stored.row_offset[range.first_row];
-    range.first_code = stored.code8.size() + stored.code16.size() - details * row.bands;
-    return range;
-}
-
 double squared_norm(std::span<const float> values) {
     double sum = 0;
     for (const float value : values) {
@@ -42,11 +28,27 @@ void join_constant(std::span<float> a, std::span<const float> b) {
 
 }  // namespace
 
-float receiver_error(const DenseRow& row, TermsSeen seen, const formats::SparseRows& stored) {
+float RowLoss::error() const {
+    return all > 0 || std::isnan(all) ? static_cast<float>(std::sqrt(lost / all)) : 0.0f;
+}
+
+formats::RowRange rows_of_receiver(const formats::SparseRows& stored, std::size_t receiver,
+                                   const DenseRow& row) {
+    formats::RowRange range;
+    range.first_row = static_cast<std::uint32_t>(receiver) * row.terms;
+    range.rows = row.terms;
+    range.bands = row.bands;
+    range.first_band_row = range.first_row * row.bands;
+    range.first_code = std::uint64_t{stored.row_offset[range.first_row]} * row.bands;
+    return range;
+}
+
+RowLoss receiver_loss(const DenseRow& row, TermsSeen seen, const formats::SparseRows& stored,
+                      std::size_t receiver) {
     const formats::SparseRowsView rows = stored.view();
-    const formats::RowRange range = last_rows(row, stored);
+    const formats::RowRange range = rows_of_receiver(stored, receiver, row);
     const bool is_joined = seen == TermsSeen::together && row.terms > 1;
-    double lost = 0, all = 0;
+    RowLoss loss;
     std::vector<float> difference(row.size()), whole(row.size()), decoded(row.size());
     // Of the row and what is stored of it.
     const auto take = [&](std::uint32_t term, std::uint32_t band, std::span<float> values,
@@ -68,11 +70,11 @@ float receiver_error(const DenseRow& row, TermsSeen seen, const formats::SparseR
                 join_constant(whole, next_whole);
                 join_constant(difference, next_difference);
             }
-            lost += squared_norm(difference);
-            all += squared_norm(whole);
+            loss.lost += squared_norm(difference);
+            loss.all += squared_norm(whole);
         }
     }
-    return all > 0 || std::isnan(all) ? static_cast<float>(std::sqrt(lost / all)) : 0.0f;
+    return loss;
 }
 
 }  // namespace opaline::bake

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "bake/plan/dense_rows.h"
 #include "formats/opal/sparse_rows.h"
 
@@ -28,7 +30,19 @@ enum class TermsSeen {
 /// Not in it: noise and bias of the rows themselves, the model of light, what the cube map does not
 /// resolve, interpolation between receivers, light of emitters, what is mirrored.
 ///
-/// `stored`: the receiver's rows are the last ones appended.
-float receiver_error(const DenseRow& row, TermsSeen seen, const formats::SparseRows& stored);
+/// Sums of squares over several receivers add up.
+struct RowLoss {
+    double lost = 0, all = 0;
+
+    float error() const;
+};
+
+/// Where the rows of a receiver stand among rows of receivers of one shape, that of `row`.
+formats::RowRange rows_of_receiver(const formats::SparseRows& stored, std::size_t receiver,
+                                   const DenseRow& row);
+
+/// `stored`: rows of receivers of that shape alone.
+RowLoss receiver_loss(const DenseRow& row, TermsSeen seen, const formats::SparseRows& stored,
+                      std::size_t receiver);
 
 }  // namespace opaline::bake

@@ -19,7 +19,9 @@ constexpr double kPrimitive = 32e3;         // names, a stage of the report, an 
 constexpr double kPlanTriangleBytes = 200;  // edges and hulls while the scene is inspected
 constexpr double kHierarchyTriangle = 200;  // Embree's, while it is built
 constexpr double kReceiver = 150;           // vertex: receivers, body points, cells that weld them
-constexpr double kGrowth = 2;               // rows are appended to vectors that double
+// Rows are appended to vectors that double; those of a primitive have twice as many coefficients
+// before they are shared (encode/share_rows.h).
+constexpr double kGrowth = 3;
 
 }  // namespace
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/encode/receiver_error.h"
+#include "bake/encode/share_rows.h"
 #include "bake/receivers/spatial_order.h"
 #include "formats/opal/cubemap.h"
 
@@ -98,18 +98,20 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
     // References, because C++20 lets no lambda of clang 14 capture a structured binding.
     const ReceiverSet& set = job.set;
     const RowLayout& layout = job.layout;
-    const RowEncoder& encoder = job.encoder;
+    const RowEncoder encoder = widen(job.encoder);
     constexpr std::size_t kReceiversPerBlock = 64;
     struct Block {
         formats::SparseRows rows;
-        std::vector<float> errors;
+        LossMeter losses;
         std::uint64_t rays = 0;
     };
     const std::vector<std::uint32_t> order = order_of(set, layout);
     const std::size_t step = batch_size(gatherers, set.size(), job.batch_bytes);
-    const TermsSeen seen = layout.separate ? TermsSeen::together : TermsSeen::apart;
+    const RowShape shape{layout.terms(), layout.bands(),
+                         layout.separate ? TermsSeen::together : TermsSeen::apart};
     formats::SparseRows rows = empty_rows(encoder);
-    std::vector<float> errors(job.measures_errors ? set.size() : 0);
+    reserve_rows(rows, encoder, set.size() * shape.terms, shape.bands);
+    LossMeter meter(encoder, shape);  // in the order of `order`
     std::vector<BodyPoint> points;
     for (std::size_t begin = 0; begin < set.size() && !context.cancelled(); begin += step) {
         const std::span<const std::uint32_t> batch =
@@ -122,7 +124,7 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
         for_each_block_in_order(
             batch.size(), kReceiversPerBlock, context,
             [&](Range range) {
-                Block block{empty_rows(encoder), {}, 0};
+                Block block{empty_rows(encoder), {encoder, shape}, 0};
                 std::vector<float> values;
                 const DenseRow row = shape_row(layout, encoder.selector.cubemap_size, values);
                 for (std::size_t v = range.begin; v < range.end; ++v) {
@@ -130,16 +132,14 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
                         gather_receiver(gatherers, set.outside[batch[v]], points[v], v, row);
                     encode_receiver(encoder, row, block.rows);
                     if (job.measures_errors) {
-                        block.errors.push_back(receiver_error(row, seen, block.rows));
+                        block.losses.add(row);
                     }
                 }
                 return block;
             },
             [&](Range range, const Block& block) {
                 formats::append_rows(rows, block.rows);
-                for (std::size_t i = 0; i < block.errors.size(); ++i) {
-                    errors[batch[range.begin + i]] = block.errors[i];
-                }
+                meter.append(block.losses);
                 rays += block.rays;
                 if (context.on_progress) {
                     context.on_progress({"rows", set.first + begin + range.end, job.total});
@@ -150,6 +150,14 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
     // Rows are missing if the bake was cancelled or if they are too many for one file; the caller
     // checks.
     const bool is_whole = rows.row_offset.size() == set.size() * layout.terms() + 1;
+    if (is_whole) rows = share_rows(std::move(rows), shape, job.encoder);
+    std::vector<float> errors(job.measures_errors && is_whole ? set.size() : 0);
+    if (!errors.empty()) {
+        const std::vector<RowLoss> losses = meter.losses(rows);
+        for (std::size_t i = 0; i < losses.size(); ++i) {
+            errors[order[i]] = losses[i].error();
+        }
+    }
     if (is_whole && layout.translucent) rows = as_given(std::move(rows), order, layout);
     return {std::move(rows), std::move(errors)};
 }

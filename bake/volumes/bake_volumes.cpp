@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/encode/share_details.h"
 #include "bake/volumes/bake_glow.h"
 #include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
@@ -17,7 +18,6 @@
 #include "bake/volumes/phase_table.h"
 #include "bake/volumes/place_nodes.h"
 #include "bake/volumes/seen_surfaces.h"
-#include "bake/volumes/share_details.h"
 #include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -13,6 +11,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/receiver_error.h"
 #include "bake/encode/row_sink.h"
+#include "bake/encode/share_rows.h"
 #include "bake/receivers/other_side.h"
 #include "bake/receivers/receiver.h"
 #include "bake/volumes/attenuation.h"
@@ -148,8 +147,7 @@ LitRow answer_of(const DimJob& job, const LitVertex& lit, std::uint32_t term, st
 // Rows of some vertices, and what encoding them again costs.
 struct DimmedBlock {
     formats::SparseRows rows;
-    std::vector<float> error;  // of each vertex: receiver_error
-    double lost = 0, all = 0;  // sums of squares of what is lost, and of all
+    LossMeter losses;
     std::uint64_t rays = 0;
 };
 
@@ -189,16 +187,12 @@ std::vector<float> dim_vertex(const DimJob& job, std::size_t vertex, std::uint64
 }
 
 DimmedBlock dim_block(const DimJob& job, Range range) {
-    DimmedBlock block{empty_rows(job.encoder), {}};
+    DimmedBlock block{empty_rows(job.encoder), {job.encoder, {job.record.terms, job.bands}}};
     for (std::size_t v = range.begin; v < range.end; ++v) {
         std::vector<float> values = dim_vertex(job, v, block.rays);
         const DenseRow row{values, job.rows.cubemap_size, job.record.terms, job.bands};
         encode_receiver(job.encoder, row, block.rows);
-        const float error = receiver_error(row, TermsSeen::apart, block.rows);
-        const double all = std::inner_product(values.begin(), values.end(), values.begin(), 0.0);
-        block.all += all;
-        block.lost += all * static_cast<double>(error) * static_cast<double>(error);
-        block.error.push_back(error);
+        block.losses.add(row);
     }
     return block;
 }
@@ -214,12 +208,13 @@ formats::Result<DimmedError> dim_surfaces(const formats::Scene& scene, const Kno
     const std::uint32_t n = knobs.cubemap_size;
     const LightCells cells = make_light_cells(std::min(n, kFinestTransmittance));
     RowSink sink = make_row_sink(make_row_encoder(n, knobs.coefficients, knobs.code_bits));
+    const RowEncoder wide = widen(sink.encoder);
     const formats::SparseRowsView given = asset.transport.view();
     std::vector<formats::PrimitiveRecord> records = asset.primitives;
     std::uint32_t band_rows = 0;
     std::uint64_t codes = 0, done = 0;
     bool fits = true;
-    double lost = 0, all = 0;
+    RowLoss loss;
     DimmedError found;
     for (std::size_t p = 0; p < records.size(); ++p) {
         formats::PrimitiveRecord& record = records[p];
@@ -231,7 +226,7 @@ formats::Result<DimmedError> dim_surfaces(const formats::Scene& scene, const Kno
         const bool is_lit = sent != nullptr && sent->receivers[p].size() > 0;
         const DimJob job{space,
                          cells,
-                         sink.encoder,
+                         wide,
                          given,
                          asset.primitives[p],
                          primitive,
@@ -240,21 +235,29 @@ formats::Result<DimmedError> dim_surfaces(const formats::Scene& scene, const Kno
                          is_lit ? &sent->light : nullptr,
                          is_lit ? &sent->receivers[p] : nullptr,
                          solid_angles};
+        formats::SparseRows rows = empty_rows(wide);
+        const RowShape shape{record.terms, record.bands};
+        LossMeter meter(wide, shape);
         for_each_block_in_order(
             record.vertex_count, kVerticesAtOnce, context,
             [&](Range range) { return dim_block(job, range); },
             [&](Range range, DimmedBlock&& block) {
                 rays += block.rays;
-                lost += block.lost;
-                all += block.all;
-                found.receivers.insert(found.receivers.end(), block.error.begin(),
-                                       block.error.end());
-                fits = fits && take_rows(sink, std::move(block.rows));
+                meter.append(block.losses);
+                fits = fits && formats::append_rows(rows, block.rows);
                 done += range.end - range.begin;
                 if (context.on_progress) {
                     context.on_progress({"shadows of volumes", done, asset.position.size()});
                 }
             });
+        rows = share_rows(std::move(rows), shape, sink.encoder);
+        if (context.cancelled()) break;
+        for (const RowLoss& own : meter.losses(rows)) {
+            loss.lost += own.lost;
+            loss.all += own.all;
+            found.receivers.push_back(own.error());
+        }
+        fits = fits && take_rows(sink, std::move(rows));
         band_rows += record.vertex_count * record.terms * record.bands;
         codes += (sink.rows.row_offset.back() - before) * record.bands;
     }
@@ -265,7 +268,7 @@ formats::Result<DimmedError> dim_surfaces(const formats::Scene& scene, const Kno
     }
     asset.primitives = std::move(records);
     asset.transport = std::move(sink.rows);
-    found.rms_relative = all > 0 ? std::sqrt(lost / all) : 0;
+    found.rms_relative = static_cast<double>(loss.error());
     return found;
 }
 

@@ -20,7 +20,7 @@ struct VertexLight {
     std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
 };
 
-/// What encoding dimmed rows again loses, relative: receiver_error of each vertex, and the RMS over
+/// What encoding dimmed rows again loses, relative: RowLoss::error of each vertex, and the RMS over
 /// all, in which a vertex weighs as the square of its rows.
 struct DimmedError {
     std::vector<float> receivers;

@@ -1,4 +1,4 @@
-#include "bake/volumes/share_details.h"
+#include "bake/encode/share_details.h"
 
 #include <array>
 #include <bit>
