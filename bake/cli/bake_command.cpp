@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -157,15 +158,27 @@ int run(const BakeCommand& options) {
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
     context.on_progress = make_progress_printer(options.progress, "bake");
-    auto result = require(
-        bake::run_bake(bake::all_effects(), imported.scene, knobs, context, options.extras));
+    std::vector<formats::Diagnostic> warnings = imported.warnings;
+    bake::BakeExtras extras = options.extras;
+    extras.on_planned = [&](const formats::Scene& scene, const bake::BakeResult& planned) {
+        const auto early = bake::describe_early(
+            {bake::all_effects(), scene, planned.facts, planned.knobs, planned.plan});
+        require(report_warnings(early));
+        warnings.insert(warnings.end(), early.begin(), early.end());
+    };
+    auto result =
+        require(bake::run_bake(bake::all_effects(), imported.scene, knobs, context, extras));
     for (formats::Diagnostic& unmet :
          bake::describe_unmet({bake::all_effects(), imported.scene, result.facts, result.knobs,
                                result.plan, result.volume_plan},
                               wanted)) {
-        result.warnings.push_back(std::move(unmet));
+        const auto is_said = [&](const formats::Diagnostic& said) {
+            return said.where == unmet.where && said.fault == unmet.fault;
+        };
+        if (std::ranges::none_of(warnings, is_said)) {
+            result.warnings.push_back(std::move(unmet));
+        }
     }
-    std::vector<formats::Diagnostic> warnings = imported.warnings;
     warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
     require(report_warnings(result.warnings));
     formats::AtomicFile& file = files.back();

@@ -22,7 +22,12 @@ struct DecidedBake {
     std::span<const PlanEntry> volume_plan = {};  ///< of volumes and layers
 };
 
+/// Warnings that decisions call for before anything is traced: knobs that they contradict, and an
+/// error that was asked for and is out of their reach.
+std::vector<formats::Diagnostic> describe_early(const DecidedBake& decided);
+
 /// Warnings about requests that were not met or have no effect, with the decision made instead.
+/// describe_early's are the last.
 std::vector<formats::Diagnostic> describe_unmet(const DecidedBake& decided,
                                                 const BakeOptions& options);
 
