@@ -139,6 +139,23 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
             machine.note};
 }
 
+// Those that were not said before, each once.
+std::vector<formats::Diagnostic> drop_said(std::vector<formats::Diagnostic> warnings,
+                                           std::vector<formats::Diagnostic> said) {
+    std::vector<formats::Diagnostic> fresh;
+    for (formats::Diagnostic& warning : warnings) {
+        const auto is_same = [&](const formats::Diagnostic& other) {
+            return other.file == warning.file && other.where == warning.where &&
+                   other.fault == warning.fault;
+        };
+        if (std::ranges::none_of(said, is_same)) {
+            said.push_back(warning);
+            fresh.push_back(std::move(warning));
+        }
+    }
+    return fresh;
+}
+
 int run(const BakeCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto wanted = parse_effects(options.scene);
@@ -172,13 +189,9 @@ int run(const BakeCommand& options) {
          bake::describe_unmet({bake::all_effects(), imported.scene, result.facts, result.knobs,
                                result.plan, result.volume_plan},
                               wanted)) {
-        const auto is_said = [&](const formats::Diagnostic& said) {
-            return said.where == unmet.where && said.fault == unmet.fault;
-        };
-        if (std::ranges::none_of(warnings, is_said)) {
-            result.warnings.push_back(std::move(unmet));
-        }
+        result.warnings.push_back(std::move(unmet));
     }
+    result.warnings = drop_said(std::move(result.warnings), warnings);
     warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
     require(report_warnings(result.warnings));
     formats::AtomicFile& file = files.back();

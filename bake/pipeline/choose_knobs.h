@@ -37,8 +37,7 @@ struct PilotState {
 Knobs choose_knobs(const BakeInputs& bake, const Knobs& knobs, const Context& context,
                    PilotState state);
 
-/// Says where the target was not reached by numbers; of models describe_early does. `measured`: by
-/// the self-check.
+/// Says where the target was not reached. `measured`: by the self-check.
 void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& accuracy,
                            const Knobs& knobs, double measured,
                            std::vector<formats::Diagnostic>& warnings);

@@ -122,15 +122,20 @@ formats::Status check_effects(const EffectTable& effects, const formats::Scene& 
         "describe media and thin-walled surfaces with --media, or leave --effects out");
 }
 
+std::optional<Diagnostic> describe_missed_models(double target, double model) {
+    if (!(target > 0) || model < target) return std::nullopt;
+    return make_warning(
+        "", "--error",
+        error_percent(target) + " is out of reach: the models err by " + error_percent(model),
+        "allow a larger error, or leave out the option that chose; `opaline plan` says which "
+        "decision errs");
+}
+
 std::vector<Diagnostic> describe_early(const DecidedBake& decided) {
     std::vector<Diagnostic> warnings;
-    const double target = decided.knobs.error_target, model = find_model_error(decided.plan);
-    if (target > 0 && model >= target) {
-        warnings.push_back(make_warning(
-            "", "--error",
-            error_percent(target) + " is out of reach: the models err by " + error_percent(model),
-            "allow a larger error, or leave out the option that chose; `opaline plan` says which "
-            "decision errs"));
+    if (auto missed =
+            describe_missed_models(decided.knobs.error_target, find_model_error(decided.plan))) {
+        warnings.push_back(std::move(*missed));
     }
     for (const PlanEntry& entry : decided.plan) {
         const EffectDescriptor& effect = decided.effects[entry.effect];

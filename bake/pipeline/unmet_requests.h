@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "bake/plan/effect.h"
@@ -21,6 +22,9 @@ struct DecidedBake {
     std::span<const PlanEntry> plan;
     std::span<const PlanEntry> volume_plan = {};  ///< of volumes and layers
 };
+
+/// That models err by more than was asked for; nothing: they do not, or `target` is 0.
+std::optional<formats::Diagnostic> describe_missed_models(double target, double model);
 
 /// Warnings that decisions call for before anything is traced: knobs that they contradict, and an
 /// error that was asked for and is out of their reach.
