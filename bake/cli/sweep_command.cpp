@@ -74,7 +74,7 @@ std::string list_left_out(const std::vector<bake::SkippedPoint>& skipped) {
     constexpr std::size_t kMost = 6;
     std::string list;
     for (std::size_t i = 0; i < std::min(kMost, skipped.size()); ++i) {
-        list += (i > 0 ? ", " : "") + skipped[i].point.label;
+        list += (i > 0 ? "; " : "") + skipped[i].point.label;
     }
     return skipped.size() > kMost ? fmt::format("{} and {} more", list, skipped.size() - kMost)
                                   : list;

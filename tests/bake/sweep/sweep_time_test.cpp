@@ -31,22 +31,20 @@ TEST(TimeLimit, IsOverAfterItsTimeOrWithAnotherFlagAndEndsBeforeIt) {
     EXPECT_TRUE(is_set_within(limit, kSoon));
 }
 
-// A ball of 2000 mean free paths without absorption: a path inside has some million events, so that
-// a first look at the truth takes far longer than the whole sweep may.
-TEST(SweepTime, TruthsAndBakesEndWithTheTime) {
+// A ball of 10,242 vertices that a draft follows walks in for many seconds, while the predictions
+// of this machine are wrong by a factor of a million.
+TEST(SweepTime, BakesThatTakeLongerThanPredictedAreStoppedWhenTheTimeIsOver) {
     const formats::Scene scene = tests::make_translucent_scene(
-        {tests::make_sphere(1)}, tests::make_grey_medium(2000, 1e-4f, 1.5f));
+        {tests::make_sphere(5)}, tests::make_grey_medium(200, 1e-3f, 1.5f));
     SweepOptions options;
-    options.seconds = 2;
+    options.seconds = 1;
     options.bake.threads = 1;
+    options.rates.kinds["all others"] = {1e-6, 1};
     const Clock::time_point start = Clock::now();
     const auto result = run_sweep(all_effects(), scene, options, {}, {});
-    EXPECT_LT(seconds_since(start), 2 * options.seconds);
-    if (result) {
-        EXPECT_FALSE(result->skipped.empty()) << "what was left out is named";
-    } else {
-        EXPECT_EQ(result.error().kind, formats::ErrorKind::usage) << "nor is it an interruption";
-    }
+    EXPECT_LT(seconds_since(start), 4 * options.seconds);
+    ASSERT_FALSE(result);
+    EXPECT_EQ(result.error().kind, formats::ErrorKind::usage) << "and no interruption";
 }
 
 }  // namespace
