@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -138,6 +139,23 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
             machine.note};
 }
 
+// Those that were not said before, each once.
+std::vector<formats::Diagnostic> drop_said(std::vector<formats::Diagnostic> warnings,
+                                           std::vector<formats::Diagnostic> said) {
+    std::vector<formats::Diagnostic> fresh;
+    for (formats::Diagnostic& warning : warnings) {
+        const auto is_same = [&](const formats::Diagnostic& other) {
+            return other.file == warning.file && other.where == warning.where &&
+                   other.fault == warning.fault;
+        };
+        if (std::ranges::none_of(said, is_same)) {
+            said.push_back(warning);
+            fresh.push_back(std::move(warning));
+        }
+    }
+    return fresh;
+}
+
 int run(const BakeCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto wanted = parse_effects(options.scene);
@@ -157,15 +175,23 @@ int run(const BakeCommand& options) {
     context.cancel = &interrupted;
     context.cache = bake::cache_folder();
     context.on_progress = make_progress_printer(options.progress, "bake");
-    auto result = require(
-        bake::run_bake(bake::all_effects(), imported.scene, knobs, context, options.extras));
+    std::vector<formats::Diagnostic> warnings = imported.warnings;
+    bake::BakeExtras extras = options.extras;
+    extras.on_planned = [&](const formats::Scene& scene, const bake::BakeResult& planned) {
+        const auto early = bake::describe_early(
+            {bake::all_effects(), scene, planned.facts, planned.knobs, planned.plan});
+        require(report_warnings(early));
+        warnings.insert(warnings.end(), early.begin(), early.end());
+    };
+    auto result =
+        require(bake::run_bake(bake::all_effects(), imported.scene, knobs, context, extras));
     for (formats::Diagnostic& unmet :
          bake::describe_unmet({bake::all_effects(), imported.scene, result.facts, result.knobs,
                                result.plan, result.volume_plan},
                               wanted)) {
         result.warnings.push_back(std::move(unmet));
     }
-    std::vector<formats::Diagnostic> warnings = imported.warnings;
+    result.warnings = drop_said(std::move(result.warnings), warnings);
     warnings.insert(warnings.end(), result.warnings.begin(), result.warnings.end());
     require(report_warnings(result.warnings));
     formats::AtomicFile& file = files.back();

@@ -1,5 +1,7 @@
 #include "bake/cli/scene_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -54,6 +56,17 @@ std::string list_effects(const char* separator) {
         }
     }
     return names;
+}
+
+// Of scenes that take seconds before anything else can be said of them, such as a mesh of many
+// instances.
+void announce_size(const std::string& scene, const formats::SceneCounts& counts) {
+    constexpr std::uint64_t kMany = 1'000'000;
+    constexpr double kSeconds = 2.5e-6;  // of a vertex, to be placed and inspected
+    if (counts.vertices < kMany) return;
+    const auto vertices = static_cast<double>(counts.vertices);
+    print_note(fmt::format("{}: {:.1f} million vertices: to inspect them takes some {}",
+                           printable(scene), 1e-6 * vertices, format_seconds(kSeconds * vertices)));
 }
 
 // The option of an effect's knob.
@@ -194,7 +207,9 @@ formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs
                             limit);
     };
     const auto check_size = [&](const formats::SceneCounts& counts) {
-        return check(bake::count_memory(counts));
+        auto status = check(bake::count_memory(counts));
+        if (status) announce_size(options.scene, counts);
+        return status;
     };
     auto imported =
         require(open_scene(options.scene,

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 
 #include "bake/accuracy/sweep/report_page.h"
 #include "bake/accuracy/sweep/tables.h"
+#include "bake/base/stage_log.h"
 #include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
@@ -67,7 +69,19 @@ class OutputFolder {
     bool created_ = false;
 };
 
+// Names of the first ones.
+std::string list_left_out(const std::vector<bake::SkippedPoint>& skipped) {
+    constexpr std::size_t kMost = 6;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(kMost, skipped.size()); ++i) {
+        list += (i > 0 ? "; " : "") + skipped[i].point.label;
+    }
+    return skipped.size() > kMost ? fmt::format("{} and {} more", list, skipped.size() - kMost)
+                                  : list;
+}
+
 int run(const SweepCommand& options) {
+    const bake::Clock::time_point start = bake::Clock::now();
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto options_of_bake = parse_effects(options.scene);
     // Of the knobs it starts from: what does not fit there fits nowhere.
@@ -83,7 +97,7 @@ int run(const SweepCommand& options) {
     std::vector<AtomicFile> files = create_outputs(outputs);
     bake::SweepOptions wanted;
     wanted.bake = options_of_bake;
-    wanted.seconds = options.seconds;
+    wanted.seconds = std::max(0.0, options.seconds - bake::seconds_since(start));
     wanted.light = options.light;
     wanted.rates = find_machine_rates().rates;
     bake::Context context;
@@ -111,7 +125,8 @@ int run(const SweepCommand& options) {
         "{}: {} bake{} in {}{}; open {}", printable(options.folder), result.points.size(),
         result.points.size() == 1 ? "" : "s", format_seconds(result.seconds),
         result.skipped.empty() ? ""
-                               : fmt::format(", {} left out (see the page)", result.skipped.size()),
+                               : fmt::format("; left out, for reasons that the page has: {}",
+                                             printable(list_left_out(result.skipped))),
         printable((std::filesystem::path(options.folder) / "report.html").string())));
     return kExitSuccess;
 }
@@ -130,8 +145,10 @@ void add_sweep_command(CLI::App& app, Job& job) {
         ->check(file_name())
         ->option_text("DIR");
     command
-        ->add_option("--seconds", options->seconds,
-                     "time for all bakes together; those that do not fit are left out and named")
+        ->add_option(
+            "--seconds", options->seconds,
+            "time for all bakes and what they are compared with; what does not fit is left "
+            "out and named")
         ->check(real_number(1, 1e6))
         ->option_text("S [300]");
     command->add_option("--light", options->light, "of the page's pictures: " + light_help())

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/accuracy/pilot/refinement.h"
+#include "bake/pipeline/unmet_requests.h"
 
 namespace opaline::bake {
 namespace {
@@ -119,13 +120,8 @@ void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& acc
         const std::string text = std::to_string(1e-3 * std::round(1e5 * error));
         return text.substr(0, text.find('.') + 3) + " %";
     };
-    if (accuracy.model >= accuracy.target) {
-        warnings.push_back(formats::make_warning(
-            "", "--error",
-            percent(accuracy.target) + " is out of reach: the models err by " +
-                percent(accuracy.model),
-            "allow a larger error, or leave out the option that chose; `opaline plan` says which "
-            "decision errs"));
+    if (auto missed = describe_missed_models(accuracy.target, accuracy.model)) {
+        warnings.push_back(std::move(*missed));
     }
     const std::string left = percent(accuracy.numerical) +
                              (accuracy.model > 0 ? ", what the models leave of the " +

@@ -280,6 +280,9 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     if (auto status = check_lamps(scene, count_emitters(emitters.lamps, glowing)); !status) {
         return std::move(status).error();
     }
+    if (extras.on_planned) {
+        extras.on_planned(scene, result);
+    }
     formats::Result<RayScene> sky = RayScene::build({}, context.threads);
     if (!sky) return std::move(sky).error();
     std::optional<RayScene> hierarchy;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct BakeResult {
 /// What a bake is asked for that changes nothing else in it.
 struct BakeExtras {
     bool receiver_errors = false;  ///< what encoding costs each receiver (receiver_error.h)
+    /// Called once the plan is there, before anything is traced, with the scene that it is of; may
+    /// be empty. Studies may still change decisions.
+    std::function<void(const formats::Scene&, const BakeResult&)> on_planned = {};
 };
 
 /// The whole bake: the stages in order, nothing else. `knobs`: as resolve_knobs makes them for the

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
+
+#include "bake/accuracy/error_warnings.h"
 
 #include "bake/scene/emission.h"
 
@@ -119,10 +122,21 @@ formats::Status check_effects(const EffectTable& effects, const formats::Scene& 
         "describe media and thin-walled surfaces with --media, or leave --effects out");
 }
 
-std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOptions& options) {
+std::optional<Diagnostic> describe_missed_models(double target, double model) {
+    if (!(target > 0) || model < target) return std::nullopt;
+    return make_warning(
+        "", "--error",
+        error_percent(target) + " is out of reach: the models err by " + error_percent(model),
+        "allow a larger error, or leave out the option that chose; `opaline plan` says which "
+        "decision errs");
+}
+
+std::vector<Diagnostic> describe_early(const DecidedBake& decided) {
     std::vector<Diagnostic> warnings;
-    describe_effects(decided, warnings);
-    describe_options(decided, options, warnings);
+    if (auto missed =
+            describe_missed_models(decided.knobs.error_target, find_model_error(decided.plan))) {
+        warnings.push_back(std::move(*missed));
+    }
     for (const PlanEntry& entry : decided.plan) {
         const EffectDescriptor& effect = decided.effects[entry.effect];
         const std::uint32_t m = entry.subject.index;
@@ -131,6 +145,16 @@ std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOpt
                 {decided.scene.materials[m], decided.facts.material[m], decided.knobs}, entry,
                 warnings);
         }
+    }
+    return warnings;
+}
+
+std::vector<Diagnostic> describe_unmet(const DecidedBake& decided, const BakeOptions& options) {
+    std::vector<Diagnostic> warnings;
+    describe_effects(decided, warnings);
+    describe_options(decided, options, warnings);
+    for (Diagnostic& early : describe_early(decided)) {
+        warnings.push_back(std::move(early));
     }
     return warnings;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "bake/plan/effect.h"
@@ -22,7 +23,15 @@ struct DecidedBake {
     std::span<const PlanEntry> volume_plan = {};  ///< of volumes and layers
 };
 
+/// That models err by more than was asked for; nothing: they do not, or `target` is 0.
+std::optional<formats::Diagnostic> describe_missed_models(double target, double model);
+
+/// Warnings that decisions call for before anything is traced: knobs that they contradict, and an
+/// error that was asked for and is out of their reach.
+std::vector<formats::Diagnostic> describe_early(const DecidedBake& decided);
+
 /// Warnings about requests that were not met or have no effect, with the decision made instead.
+/// describe_early's are the last.
 std::vector<formats::Diagnostic> describe_unmet(const DecidedBake& decided,
                                                 const BakeOptions& options);
 

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "bake/scene/body_shells.h"
+#include "bake/scene/holes.h"
 #include "bake/scene/horizon.h"
 #include "bake/scene/nested_media.h"
 #include "bake/scene/scene_facts.h"
@@ -70,28 +70,6 @@ bool is_convex(const BodyShells& body, const BodyShell& shell, Searches& searche
     }
     searches.nodes_left = search.nodes_left;
     return !search.is_over();
-}
-
-// Of all edges where an odd number of triangles meet [m].
-double find_open_length(const BodyShells& body) {
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
-    for (const BodyTriangle& t : body.triangle) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            edges.push_back(std::minmax({t.point[k], t.point[(k + 1) % 3]}));
-        }
-    }
-    std::ranges::sort(edges);
-    double length = 0;
-    for (std::size_t i = 0, end = 0; i < edges.size(); i = end) {
-        while (end < edges.size() && edges[end] == edges[i]) {
-            ++end;
-        }
-        if ((end - i) % 2 == 1) {
-            length += glm::distance(glm::dvec3(body.position[edges[i].first]),
-                                    glm::dvec3(body.position[edges[i].second]));
-        }
-    }
-    return length;
 }
 
 // Size, colours and the tilt of shading normals against their facets. Volumes are those of cones
@@ -184,8 +162,7 @@ void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts
     const BodyShells body = make_body_shells(scene, material);
     own.open_edges = body.open_edges;
     if (body.open_edges > 0) {
-        const double length = find_open_length(body);
-        own.holes = own.area > 0 ? length * length / (4 * std::numbers::pi * own.area) : 1;
+        own.holes = own.area > 0 ? bound_hole_area(body) / own.area : 1;
     }
     own.parts = static_cast<std::uint32_t>(body.shell.size());
     const bool may_be_open = std::none_of(body.shell.begin(), body.shell.end(), folds_inward);

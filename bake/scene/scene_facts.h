@@ -56,7 +56,7 @@ struct MaterialFacts {
     std::uint32_t convex_parts = 0;  ///< whose points all lie on their hull, within kMostElevation
     std::uint64_t open_edges = 0;    ///< where an odd number of triangles meet
     bool is_closed() const { return triangles > 0 && open_edges == 0; }
-    /// Bound on the area of holes over that of the surface: of a circle as long as all open edges.
+    /// Bound on the area of holes over that of the surface (holes.h).
     double holes = 0;
     /// Whether volume and area say how thick it is. A body with large holes may be a sheet: only
     /// rays tell. Small ones change the volume by a few percent, as it is taken from a point of the

@@ -12,7 +12,8 @@
 
 #include "bake/accuracy/sweep/finest.h"
 #include "bake/accuracy/sweep/run_point.h"
-#include "bake/accuracy/sweep/trace_for.h"
+#include "bake/accuracy/sweep/time_limit.h"
+#include "bake/accuracy/sweep/trace_truths.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/emitters/plan_emitters.h"
 #include "bake/environment/builtin_environment.h"
@@ -24,6 +25,14 @@
 
 namespace opaline::bake {
 namespace {
+
+// Of the time, for what all bakes are compared with.
+constexpr double kShare = 1.0 / 20;
+
+formats::Error make_time_error(std::string fault) {
+    return formats::make_error(formats::ErrorKind::usage, "", "--seconds", std::move(fault),
+                               "give more seconds, or a smaller scene");
+}
 
 struct Prediction {
     double seconds = 0, bytes = 0;
@@ -61,9 +70,10 @@ struct Sweep {
     const formats::Scene& scene;
     const SceneFacts& facts;
     const SweepOptions& options;
-    const Context& context;
+    const Context& context;  ///< cancelled once the time is over
+    const Context& outer;    ///< as the caller gave it
     const std::function<void(const SweepStep&)>& on_step;
-    Clock::time_point start = Clock::now();
+    Clock::time_point start;
     SweepResult result{};
     SweepView view{};
     std::map<std::uint32_t, SweepLights> lights{};  // by cube map size
@@ -80,7 +90,11 @@ struct Sweep {
     double left() const { return options.seconds - seconds_since(start); }
     // Predictions are right within a factor of two, and the factor is the same for all points on a
     // machine.
-    double scale() const { return predicted > 0 ? measured / predicted : 2.0; }
+    double scale() const { return predicted > 0 ? measured / predicted : 1.0; }
+
+    bool is_out_of_time(const formats::Error& error) const {
+        return error.kind == formats::ErrorKind::interrupted && !outer.cancelled();
+    }
 
     // Why a point is skipped; empty: it is not.
     std::string objection(const Prediction& cost, double seconds_left) const {
@@ -155,6 +169,10 @@ struct Sweep {
         if (!point_lights) return point_lights.error();
         try {
             auto record = run_point(effects, scene, point, view, **point_lights, context);
+            if (!record && is_out_of_time(record.error())) {
+                skip(point, cost, "was not done in the time that was left");
+                return formats::ok_status();
+            }
             if (!record) return std::move(record).error();
             measured += record->seconds;
             predicted += cost.seconds;
@@ -197,8 +215,11 @@ formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
 formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats::Scene& scene,
                                        const SweepOptions& options, const Context& outer,
                                        const std::function<void(const SweepStep&)>& on_step) {
+    const Clock::time_point start = Clock::now();
+    const TimeLimit limit(options.seconds, outer.cancel);
     Context context = outer;
     context.threads = thread_count(outer);
+    context.cancel = limit.flag();
     context.on_progress = {};  // steps are the progress
     auto picture_light = open_environment(options.light);
     if (!picture_light) return std::move(picture_light).error();
@@ -208,7 +229,9 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
                 .facts = facts,
                 .options = options,
                 .context = context,
-                .on_step = on_step};
+                .outer = outer,
+                .on_step = on_step,
+                .start = start};
     SweepResult& result = sweep.result;
     result.source = std::filesystem::path(scene.source).filename().string();
     result.sha256 = scene.sha256;
@@ -244,10 +267,12 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     result.plan = plan_bake(effects, scene, facts, *preview);
     result.volume_plan = plan_the_rest(scene, *preview);
     result.subject = sweep_subject(effects, scene, result.plan, *preview, result.volume_plan);
-    constexpr double kShare = 1.0 / 20;
     if (result.subject.has_volumes) {
         auto volumes =
             make_sweep_volumes(scene, kShare * options.seconds, options.bake.seed, context);
+        if (!volumes && sweep.is_out_of_time(volumes.error())) {
+            return make_time_error("it is over before a first look at the light of the volumes");
+        }
         if (!volumes) return std::move(volumes).error();
         sweep.view.volumes = std::move(*volumes);
     }
@@ -256,36 +281,24 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
     if (auto status = sweep.visit(first, sweep.left()); !status) return std::move(status).error();
     if (result.points.empty()) {
-        return formats::make_error(formats::ErrorKind::usage, "", "--seconds",
-                                   "not even a draft fits: it " + result.skipped.front().reason,
-                                   "give more seconds, or a smaller scene");
+        return make_time_error("not even a draft fits: it " + result.skipped.front().reason);
     }
-    std::vector<LightCheck> traced;
+    SweepTruths truths;
     if (has_receivers(scene)) {
-        ReferenceLadderOptions climb;
-        climb.seconds = kShare * options.seconds;
-        climb.most_seconds = std::max(0.0, 0.5 * sweep.left());
-        climb.seed = options.bake.seed;
-        auto reference = climb_reference(scene, climb, context);
-        if (!reference) return std::move(reference).error();
-        result.reference = std::move(*reference);
-        if (!result.reference) {
+        auto found = trace_truths(scene, sweep.view.model,
+                                  {.seconds = kShare * options.seconds,
+                                   .seed = options.bake.seed,
+                                   .simulated = held_light(effects, result.plan),
+                                   .lit_by_volumes = lights_surfaces(result.volume_plan),
+                                   .volumes_see_surfaces = sees_surfaces(result.volume_plan)},
+                                  sweep.left(), context);
+        if (!found) return std::move(found).error();
+        truths = std::move(*found);
+        result.reference = std::move(truths.reference);
+        for (SweepTruths::LeftOut& left : truths.left_out) {
             result.skipped.push_back(
-                {{"ladder of the Monte Carlo reference", {}, *draft},
-                 0,
-                 0,
-                 "no light reaches the receivers, or its first rungs would take more than half of "
-                 "the time that was left"});
+                {{std::move(left.name), {}, {}}, 0, 0, std::move(left.reason)});
         }
-        auto paths = trace_for(scene, sweep.view.model,
-                               {.seconds = kShare * options.seconds,
-                                .seed = options.bake.seed,
-                                .simulated = held_light(effects, result.plan),
-                                .lit_by_volumes = lights_surfaces(result.volume_plan),
-                                .volumes_see_surfaces = sees_surfaces(result.volume_plan)},
-                               context);
-        if (!paths) return std::move(paths).error();
-        traced = std::move(*paths);
     }
     if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
         result.base = Quality::draft;
@@ -306,6 +319,10 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
             return std::move(status).error();
         }
     }
+    if (outer.cancelled()) {
+        return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
+                                   "nothing was written");
+    }
     scale_layer_radiance(result.points);
     const std::vector<std::string>& names = sweep.lights.begin()->second.probes.names;
     compare_with_finest(result, effects, scene, sweep.view.probes, names);
@@ -316,9 +333,9 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         std::ranges::copy(volume_light_names(), std::back_inserter(result.lights));
     }
     for (PointRecord& record : result.points) {
-        if (has_receivers(scene)) {
-            record.total = compare_with_truth(record.model_luminance, traced, sweep.view.model,
-                                              options.bake.seed);
+        if (!truths.traced.empty()) {
+            record.total = compare_with_truth(record.model_luminance, truths.traced,
+                                              sweep.view.model, options.bake.seed);
         }
         if (!record.volume_luminance.empty()) {
             take_larger(record.total, record.volumes);

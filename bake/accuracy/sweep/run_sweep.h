@@ -13,7 +13,7 @@ namespace opaline::bake {
 
 struct SweepOptions {
     BakeOptions bake;           ///< effects, seed and threads; each point sets the knobs itself
-    double seconds = 300;       ///< the sweep starts no point that is predicted to end later
+    double seconds = 300;       ///< of bakes and truths together: what is not done is left out
     double most_bytes = 4e9;    ///< nor one whose file is predicted to be larger
     std::size_t probes = 2000;  ///< receivers to compare at, at most
     StageRates rates;           ///< of this machine
@@ -58,8 +58,10 @@ struct SweepStep {
 /// setting that half of the time allows; the other presets; choices; one-at-a-time and diagonal
 /// ladders and grids, cheap points first. The ladders stand
 /// around `preview`, or `draft` where a twentieth of the time is less than `preview` takes.
-/// Predictions are predict_costs', scaled by how long the points so far took. A point that runs out
-/// of memory is skipped. Errors: as run_bake; usage, for a light that is none or too little time.
+/// No point is begun that is predicted to end too late: predictions are predict_costs', scaled by
+/// how long the points so far took. A point or truth that is not done in time is stopped and
+/// skipped, as is a point that runs out of memory. Errors: as run_bake; usage, for a light that is
+/// none or too little time.
 formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats::Scene& scene,
                                        const SweepOptions& options, const Context& context,
                                        const std::function<void(const SweepStep&)>& on_step);

@@ -19,13 +19,18 @@ formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
     wanted.lit_by_volumes = options.lit_by_volumes;
     wanted.volumes_see_surfaces = options.volumes_see_surfaces;
     wanted.max_events = kFewEvents;
+    std::vector<LightCheck> fewer;  // of the round before
     for (double left = options.seconds;;) {
         const Clock::time_point start = Clock::now();
         auto traced = trace_model_truth(scene, probes, wanted, context);
+        if (!traced && traced.error().kind == formats::ErrorKind::interrupted && !fewer.empty()) {
+            return fewer;
+        }
         const double took = std::max(seconds_since(start), 1e-3);
         left -= took;
         const double times = std::min(left / took, kMostTimes);
         if (!traced || times < 2 || wanted.max_events >= kMostEvents) return traced;
+        fewer = std::move(*traced);
         wanted.max_events =
             std::min(kMostEvents,
                      static_cast<std::uint64_t>(times * static_cast<double>(wanted.max_events)));

@@ -16,7 +16,8 @@ struct TraceForOptions {
 };
 
 /// Path tracing that the total error of every bake is measured against: few at first, and
-/// more as long as the time allows. Errors: as trace_model_truth.
+/// more as long as the time allows. Once cancelled, what was traced by then. Errors: as
+/// trace_model_truth, if that is nothing.
 formats::Result<std::vector<LightCheck>> trace_for(const formats::Scene& scene,
                                                    const ModelProbes& probes,
                                                    const TraceForOptions& options,

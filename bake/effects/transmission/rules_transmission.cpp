@@ -1,7 +1,9 @@
 #include "bake/effects/transmission/rules_transmission.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 #include "bake/scattering/fresnel.h"
@@ -132,6 +134,29 @@ PlanEntry decide_straight_views(const PlanInput& input) {
     }
     entry.on = entry.terms > 1;
     return entry;
+}
+
+void warn_of_reach(const PlanInput& input, const PlanEntry& entry,
+                   std::vector<formats::Diagnostic>& warnings) {
+    constexpr double kLeastError = 0.25;
+    const double target = input.knobs.error_target;
+    if (!(target > 0) || entry.name != "transmission.view" || !(entry.bound > 0)) return;
+    const double share = typical_share(*input.material.medium, input.subject);
+    if (kLeastError * share <= target) return;
+    const bool is_known = input.subject.has_thickness();
+    std::array<char, 32> asked{};
+    std::snprintf(asked.data(), asked.size(), "%.3g %%", 100 * target);
+    warnings.push_back(formats::make_warning(
+        "", entry.subject.name,
+        "--error: " + std::string(asked.data()) +
+            (is_known ? " is out of reach: some " + percent(share) +
+                            " of even light crosses the body unscattered, and rows that blur it "
+                            "err by a quarter of that at least"
+                      : " may be out of reach: how thick the open body is, is not known, and where "
+                        "it is thin, rows blur the light that crosses it"),
+        std::string(is_known ? "" : "close the surface, ") +
+            "allow a larger error, or leave transmission out with --effects and let the host "
+            "refract such light"));
 }
 
 }  // namespace opaline::bake

@@ -284,6 +284,7 @@ EffectDescriptor describe_transmission(Effect id) {
                           }},
             .held_light = formats::TermSet::unscattered,
             .make_look_through = make_look_through,
+            .warn_of_plan = warn_of_reach,
             .warn_of_model = warn_of_model};
 }
 

@@ -1,8 +1,13 @@
 #include "bake/effects/transmission/rules_transmission.h"
 
 #include <cmath>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "bake/effects/transmission/view_fit.h"
+#include "bake/scene/inspect_scene.h"
 #include "tests/bake/transmission/straight_body.h"
 
 namespace opaline::bake {
@@ -29,6 +34,39 @@ TEST(StraightShare, IsNoLessThanWhatABallShowsAndLittleMore) {
             EXPECT_GE(shown, 0.75 * bound) << eta << ' ' << sigma_t;
         }
     }
+}
+
+// Of balls of radius 1 m and of open plates that are asked for an error of 3 %.
+TEST(StraightReach, ErrorThatClearBodiesCannotMeetIsSaidBeforeTheBake) {
+    const auto fault_of = [](const tests::Primitive& shape, float sigma_t, double target) {
+        const tests::Scene scene =
+            tests::make_translucent_scene({shape}, tests::make_grey_medium(0, sigma_t));
+        const SceneFacts facts = inspect_scene(scene);
+        Knobs knobs;
+        knobs.error_target = target;
+        std::vector<PlanEntry> plan;
+        using Rule = std::pair<const char*, PlanEntry (*)(const PlanInput&)>;
+        for (const auto& [name, decide] : {Rule{"transmission", decide_transmission},
+                                           Rule{"transmission.view", decide_straight_views}}) {
+            PlanEntry entry = decide(
+                {scene.materials[0], facts.material[0], knobs, kLeastBound, std::span(plan)});
+            entry.name = name;
+            plan.push_back(std::move(entry));
+        }
+        std::vector<formats::Diagnostic> warnings;
+        for (const PlanEntry& entry : plan) {
+            warn_of_reach({scene.materials[0], facts.material[0], knobs}, entry, warnings);
+        }
+        EXPECT_LE(warnings.size(), 1u);
+        return warnings.empty() ? std::string() : warnings.front().fault;
+    };
+    const tests::Primitive ball = tests::make_sphere(3),
+                           plate = tests::make_quad({}, {1, 0, 0}, {0, 0, -1});
+    EXPECT_EQ(fault_of(ball, 0.1f, 0.03).find("--error: 3 % is out of reach"), 0u);
+    EXPECT_EQ(fault_of(plate, 0.1f, 0.03).find("--error: 3 % may be out of reach"), 0u);
+    EXPECT_EQ(fault_of(ball, 0.1f, 0.3), "");
+    EXPECT_EQ(fault_of(ball, 0.1f, 0), "") << "nothing was asked for";
+    EXPECT_EQ(fault_of(ball, 20, 0.03), "") << "hardly any light crosses";
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bake/accuracy/sweep/reference_ladder.h"
+#include "bake/accuracy/sweep/trace_for.h"
+
+namespace opaline::bake {
+
+/// What surfaces' and volumes' bakes are compared with, as far as there was time for it.
+struct SweepTruths {
+    std::optional<ReferenceLadder> reference;
+    std::vector<LightCheck> traced;  ///< that total errors are against
+    struct LeftOut {
+        std::string name, reason;
+    };
+    std::vector<LeftOut> left_out;
+};
+
+/// Each of both takes about `options.seconds`, and is stopped after half of the `left` seconds that
+/// are left by then. A truth that the context stops is left out as well. Errors: resource.
+formats::Result<SweepTruths> trace_truths(const formats::Scene& scene, const ModelProbes& probes,
+                                          const TraceForOptions& options, double left,
+                                          const Context& context);
+
+}  // namespace opaline::bake
