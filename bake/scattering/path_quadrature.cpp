@@ -2,41 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <utility>
+
+#include "bake/scattering/gauss_legendre.h"
 
 namespace opaline::bake {
-namespace {
-
-// Value and derivative of the Legendre polynomial of degree n, by its three-term recursion.
-struct Legendre {
-    double value, derivative;
-};
-Legendre legendre(std::uint32_t n, double x) {
-    double previous = 1, value = x;
-    for (std::uint32_t k = 2; k <= n; ++k) {
-        const double next = ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k;
-        previous = value;
-        value = next;
-    }
-    return {value, n * (x * value - previous) / (x * x - 1.0)};
-}
-
-}  // namespace
-
 PathRule make_gauss_rule(std::uint32_t count) {
-    PathRule rule;
-    for (std::uint32_t i = count; i-- > 0;) {
-        double x = std::cos(std::numbers::pi * (i + 0.75) / (count + 0.5));
-        constexpr int kNewtonSteps = 8;  // quadratic from a guess good to 1/count^3
-        for (int step = 0; step < kNewtonSteps; ++step) {
-            const Legendre p = legendre(count, x);
-            x -= p.value / p.derivative;
-        }
-        const double slope = legendre(count, x).derivative;
-        rule.position.push_back(0.5 + 0.5 * x);
-        rule.weight.push_back(1.0 / ((1.0 - x * x) * slope * slope));
-    }
-    return rule;
+    GaussLegendre rule = make_gauss_legendre(static_cast<int>(count));
+    return {std::move(rule.node), std::move(rule.weight)};
 }
 
 PathRule make_midpoint_rule(std::uint32_t count) {
