@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The page of a sweep in a headless browser, wide and narrow: every chart is drawn, nothing is asked
+# The page of a sweep in a headless browser, wide and narrow: every chart that has data is drawn, nothing is asked
 # of the network, the console stays silent. Usage: report_page.sh REPORT.html BROWSER FOLDER
 # FOLDER: to write into.
 set -euo pipefail
@@ -8,7 +8,7 @@ export HOME=$folder  # a browser writes there
 
 # After the page's own script: charts that exist, pictures that were decoded, what was fetched.
 probe='<script>addEventListener("load", () => {
-  const canvases = [...document.querySelectorAll("canvas")];
+  const canvases = [...document.querySelectorAll("canvas")].filter(c => !c.closest("[hidden]"));
   const drawn = canvases.filter(c => Chart.getChart(c) && c.width > 0).length;
   const broken = [...document.images].filter(i => i.naturalWidth === 0).length;
   const fetched = performance.getEntriesByType("resource").filter(e => !e.name.startsWith("data:")).length;
