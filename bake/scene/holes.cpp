@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "formats/disjoint_sets.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -33,36 +35,18 @@ std::vector<Edge> find_open_edges(const BodyShells& body) {
     return open;
 }
 
-// Sets of connected points, each named by one of them.
-class ConnectedPoints {
-  public:
-    explicit ConnectedPoints(std::size_t points) : above_(points) {
-        std::iota(above_.begin(), above_.end(), 0u);
-    }
-    std::uint32_t name(std::uint32_t point) {
-        while (above_[point] != point) {
-            point = above_[point] = above_[above_[point]];
-        }
-        return point;
-    }
-    void connect(const Edge& edge) { above_[name(edge.first)] = name(edge.second); }
-
-  private:
-    std::vector<std::uint32_t> above_;
-};
-
 }  // namespace
 
 double bound_hole_area(const BodyShells& body) {
     if (body.open_edges == 0) return 0;
     const std::vector<Edge> open = find_open_edges(body);
-    ConnectedPoints border(body.position.size());
+    formats::DisjointSets border(body.position.size());
     for (const Edge& edge : open) {
-        border.connect(edge);
+        border.join(edge.first, edge.second);
     }
     std::vector<double> length(body.position.size());  // [m] of the border with that name
     for (const Edge& edge : open) {
-        length[border.name(edge.first)] += glm::distance(glm::dvec3(body.position[edge.first]),
+        length[border.find(edge.first)] += glm::distance(glm::dvec3(body.position[edge.first]),
                                                          glm::dvec3(body.position[edge.second]));
     }
     return std::inner_product(length.begin(), length.end(), length.begin(), 0.0) /

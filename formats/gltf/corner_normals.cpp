@@ -8,6 +8,8 @@
 #include <tuple>
 #include <utility>
 
+#include "formats/disjoint_sets.h"
+
 namespace opaline::formats::gltf {
 
 namespace {
@@ -49,28 +51,6 @@ class QuietOpenMesh {
     bool was_enabled_;
 };
 
-/// Sets of corners; the least corner of a set stands for it.
-class CornerSets {
-  public:
-    explicit CornerSets(std::size_t count) : parent_(count) {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-    }
-    std::uint32_t find(std::uint32_t corner) {
-        while (parent_[corner] != corner) {
-            corner = parent_[corner] = parent_[parent_[corner]];
-        }
-        return corner;
-    }
-    void join(std::uint32_t a, std::uint32_t b) {
-        a = find(a);
-        b = find(b);
-        parent_[std::max(a, b)] = std::min(a, b);
-    }
-
-  private:
-    std::vector<std::uint32_t> parent_;
-};
-
 double angle_at(glm::dvec3 a, glm::dvec3 b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
@@ -89,7 +69,7 @@ struct Faces {
 /// Joins the corners of triangles that share an edge and differ by less than an angle. OpenMesh
 /// refuses triangles that make it no manifold; those meet each other in the next round.
 void join_smooth_corners(const Faces& faces, std::size_t places, double least_cosine,
-                         CornerSets& sets) {
+                         DisjointSets& sets) {
     constexpr int kRounds = 8;  // then, more than so many triangles meet at one edge or point
     const QuietOpenMesh quiet;
     std::vector<std::uint32_t> left;
@@ -169,7 +149,7 @@ CornerNormals corner_normals(std::span<const glm::vec3> position,
             faces.place[t + k] = welded[index[t + k]];
         }
     }
-    CornerSets sets(count);
+    DisjointSets sets(count);
     join_smooth_corners(faces, position.size(), std::cos(std::max(most_angle, kFlat)), sets);
 
     const std::vector<glm::dvec3>& face = faces.normal;
