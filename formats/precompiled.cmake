@@ -1,5 +1,5 @@
 # What makes a build from nothing fast: the headers that most sources include are parsed once, and the sources of a room are
-# compiled twenty at a time, so that helpers in anonymous namespaces have names of their own within a room.
+# compiled forty at a time, so that helpers in anonymous namespaces have names of their own within a room.
 
 # Every library and program defined in DIRECTORY and below it, in the list OUT.
 function(opaline_targets_below directory out)
@@ -15,7 +15,7 @@ endfunction()
 # Compiles the sources of TARGET together, with the precompiled headers of the target FROM, whose flags must be the same.
 function(opaline_build_fast target from)
     if(OPALINE_FAST_BUILD)
-        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 20)
+        set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 40)
         target_precompile_headers(${target} REUSE_FROM ${from})
     endif()
 endfunction()
@@ -42,7 +42,7 @@ function(opaline_compile_with target name options)
     set_target_properties(${target}_${name} PROPERTIES
         POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
     if(OPALINE_FAST_BUILD)
-        set_target_properties(${target}_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 20)
+        set_target_properties(${target}_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 40)
     endif()
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${name}>)
 endfunction()

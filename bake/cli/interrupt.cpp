@@ -6,11 +6,11 @@ namespace opaline::cli {
 namespace {
 
 // A signal handler can reach nothing but a global.
-std::atomic<bool> interrupted = false;
+std::atomic<bool> interrupt_caught = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 void on_signal(int number) {
-    interrupted.store(true);
+    interrupt_caught.store(true);
     std::signal(number, SIG_DFL);
 }
 
@@ -22,7 +22,7 @@ const std::atomic<bool>& catch_interrupts() {
             std::signal(number, SIG_IGN);
         }
     }
-    return interrupted;
+    return interrupt_caught;
 }
 
 }  // namespace opaline::cli

@@ -76,11 +76,11 @@ float folded(float u, TextureWrap mode) {
 }
 
 // Two neighbours along one axis, and the weight of the second.
-struct Neighbours {
+struct TexelPair {
     std::uint32_t low, high;
     float share;
 };
-Neighbours neighbours(float u, std::uint32_t size, TextureWrap mode) {
+TexelPair neighbours(float u, std::uint32_t size, TextureWrap mode) {
     const float x = u * static_cast<float>(size) - 0.5f, floor = std::floor(x);
     const auto low = static_cast<std::int32_t>(floor);
     const auto last = static_cast<std::int32_t>(size) - 1;
@@ -95,8 +95,8 @@ Neighbours neighbours(float u, std::uint32_t size, TextureWrap mode) {
 }
 
 glm::vec4 sample_level(const ImageLookup& lookup, const Level& level, glm::vec2 at) {
-    const Neighbours x = neighbours(at.x, level.width, lookup.wrap_u);
-    const Neighbours y = neighbours(at.y, level.height, lookup.wrap_v);
+    const TexelPair x = neighbours(at.x, level.width, lookup.wrap_u);
+    const TexelPair y = neighbours(at.y, level.height, lookup.wrap_v);
     const glm::vec4* low = &level.texel[std::size_t{y.low} * level.width];
     const glm::vec4* high = &level.texel[std::size_t{y.high} * level.width];
     return (1 - y.share) * ((1 - x.share) * low[x.low] + x.share * low[x.high]) +

@@ -33,9 +33,9 @@ float tolerance_of(const formats::Scene& scene, const std::vector<bool>& chosen)
 }
 
 // Positions that others near them move to, by cell.
-class Places {
+class WeldedPlaces {
   public:
-    explicit Places(float tolerance) : tolerance_(tolerance) {}
+    explicit WeldedPlaces(float tolerance) : tolerance_(tolerance) {}
 
     // The first of those given so far that is within the tolerance; else the position itself.
     glm::vec3 place_of(glm::vec3 at) {
@@ -76,7 +76,7 @@ std::vector<WeldedVertices> weld_seams(const formats::Scene& scene,
     std::vector<WeldedVertices> welded;
     const float tolerance = tolerance_of(scene, chosen);
     if (!(tolerance > 0)) return welded;
-    Places places(tolerance);
+    WeldedPlaces places(tolerance);
     for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
         const Primitive& primitive = scene.primitives[p];
         if (!chosen[primitive.material]) continue;

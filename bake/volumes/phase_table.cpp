@@ -17,15 +17,15 @@ using formats::phase_cosine;
 constexpr std::size_t kParts = 32;  // samples of p within a step between entries
 
 // p between two cosines.
-struct Part {
+struct PhasePart {
     double place = 0;        // of its middle, among the entries
     double solid_angle = 0;  // [sr]
     double value = 0;        // [1/sr]
 };
 
-std::vector<Part> sample_phase(const formats::PhaseFunction& phase) {
+std::vector<PhasePart> sample_phase(const formats::PhaseFunction& phase) {
     const PhaseDensity density = make_phase_density(phase);
-    std::vector<Part> parts((kPhaseEntries - 1) * kParts);
+    std::vector<PhasePart> parts((kPhaseEntries - 1) * kParts);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const auto at = [&](double within) {
             return (static_cast<double>(i) + within) / static_cast<double>(kParts);
@@ -40,15 +40,15 @@ std::vector<Part> sample_phase(const formats::PhaseFunction& phase) {
 }
 
 // The cut at which min(p, cut) integrates to `mass`; the largest value where p is below that.
-double find_cut(const std::vector<Part>& parts, double mass) {
+double find_cut(const std::vector<PhasePart>& parts, double mass) {
     double low = 0, high = 0;
-    for (const Part& part : parts) {
+    for (const PhasePart& part : parts) {
         high = std::max(high, part.value);
     }
     // To the last bit: each step halves the interval.
     for (double middle = 0.5 * high; middle > low && middle < high; middle = 0.5 * (low + high)) {
         double sum = 0;
-        for (const Part& part : parts) {
+        for (const PhasePart& part : parts) {
             sum += part.solid_angle * std::min(part.value, middle);
         }
         (sum < mass ? low : high) = middle;
@@ -59,10 +59,10 @@ double find_cut(const std::vector<Part>& parts, double mass) {
 }  // namespace
 
 std::vector<float> tabulate_phase(const formats::PhaseFunction& phase, double peak) {
-    const std::vector<Part> parts = sample_phase(phase);
+    const std::vector<PhasePart> parts = sample_phase(phase);
     const double cut = peak > 0 ? find_cut(parts, 1 - peak) : HUGE_VAL;
     std::vector<double> sum(kPhaseEntries), weight(kPhaseEntries);
-    for (const Part& part : parts) {
+    for (const PhasePart& part : parts) {
         const auto i = static_cast<std::size_t>(part.place);
         const double upper = part.place - static_cast<double>(i);
         for (const auto& [entry, share] : {std::pair{i, 1 - upper}, std::pair{i + 1, upper}}) {

@@ -12,8 +12,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-
 /// One attribute of all instances; empty where it is missing or at fault.
 std::vector<float> read(const Document& document, const std::vector<Bytes>& buffers,
                         const Node& node, const char* semantic, std::uint32_t components,

@@ -10,6 +10,9 @@
 
 namespace opaline::formats::gltf {
 
+/// The extension of nodes that draw their mesh at several places.
+inline constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
+
 /// EXT_mesh_gpu_instancing of a node; empty where it does not have it.
 Attributes read_instances(const NamedObject& node);
 

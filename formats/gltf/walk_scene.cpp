@@ -12,8 +12,6 @@ namespace opaline::formats::gltf {
 
 namespace {
 
-constexpr const char* kInstancing = "EXT_mesh_gpu_instancing";
-
 /// The parent of every node, kNone of roots.
 std::vector<std::uint32_t> find_parents(const Document& document) {
     std::vector<std::uint32_t> parent(document.nodes.size(), kNone);

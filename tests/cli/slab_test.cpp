@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
 
 #include "tests/cli/print_json.h"
@@ -12,6 +13,7 @@
 namespace opaline::tests {
 namespace {
 
+using std::numbers::pi;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
@@ -75,7 +77,7 @@ TEST(Slab, ViewsOfEveryMethodSeeTheSameLight) {
             EXPECT_EQ(radiance(model.at(i), side, "1"), radiance(solved.at(i), side, "1"));
         }
         // pi / mu_l p mu_l / (mu_l + mu_v) (1 - e^-x): the angle between -l and v.
-        const double pi = std::acos(-1.0), mu = std::cos(degrees * pi / 180);
+        const double mu = std::cos(degrees * pi / 180);
         const double cosine = -std::cos(std::acos(0.6) + degrees * pi / 180), g = 0.7;
         const double phase = (1 - g * g) / (4 * pi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
         const double once = pi * phase / (0.6 + mu) * -std::expm1(-1 / 0.6 - 1 / mu);

@@ -93,7 +93,7 @@ TEST(Sheet, IsAsBrightAsPathTracedFromAboveAndFromBelow) {
         options.effects = {"direct", "sheet"};
         const BakeResult baked = tests::bake_scene(scene, options);
         ModelCheckOptions check;
-        check.max_events = 2000000;
+        check.max_events = 700000;
         const auto report = check_model(scene, baked.asset.view(), check, {});
         ASSERT_TRUE(report);
         EXPECT_LT(report->by_light[0].rms_relative, 0.02) << turned;

@@ -5,6 +5,7 @@
 #include "bake/effects/transmission/rules_transmission.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
+#include "tests/support/walk_bake.h"
 
 namespace opaline::bake {
 namespace {
@@ -12,10 +13,6 @@ namespace {
 formats::Scene clear_ball(float sigma_s, float sigma_a, float eta = 1.3f) {
     return tests::make_translucent_scene({tests::make_sphere(2)},
                                          tests::make_grey_medium(sigma_s, sigma_a, eta));
-}
-
-const PlanEntry& entry_of(const BakeResult& baked, const char* name) {
-    return *find_entry(baked.plan, name, 0);
 }
 
 // 1 less what the boundary mirrors along the normal.

@@ -90,9 +90,9 @@ TEST(HostileVdb, NoPrefixIsTakenForTheWholeFile) {
 TEST(HostileVdb, FlippedBytesAreRefusedOrHarmless) {
     const TemporaryFolder folder;
     std::mt19937 random(1);
-    for (const bool is_compressed : {true, false}) {
+    for (const bool is_compressed : {false, true}) {
         const std::string whole = small_file({.is_compressed = is_compressed});
-        for (int i = 0; i < 60 / kSlower; ++i) {
+        for (int i = 0; i < (OPALINE_SANITIZED ? 3 : 60); ++i) {
             std::string bytes = whole;
             for (unsigned k = 0; k < 1 + random() % 3; ++k) {
                 bytes[random() % bytes.size()] = static_cast<char>(random());

@@ -49,9 +49,8 @@ TEST_F(GlTranslucent, PicturesAgreeWithTheCpuForEveryNumberOfTermsAndBands) {
         std::uint32_t bands;
     };
     for (const auto& [terms, eta, bands] :
-         {TermsAndBands{1, 1.3f, 3}, TermsAndBands{4, 1.3f, 3}, TermsAndBands{4, 0.7f, 3},
-          TermsAndBands{9, 1.0f, 3}, TermsAndBands{16, 1.5f, 3}, TermsAndBands{25, 3.0f, 3},
-          TermsAndBands{1, 1.3f, 1}, TermsAndBands{4, 1.3f, 1}}) {
+         {TermsAndBands{1, 1.3f, 3}, TermsAndBands{4, 0.7f, 3}, TermsAndBands{9, 1.0f, 3},
+          TermsAndBands{25, 3.0f, 3}, TermsAndBands{1, 1.3f, 1}, TermsAndBands{4, 1.3f, 1}}) {
         SCOPED_TRACE(testing::Message()
                      << terms << " terms, eta " << eta << ", " << bands << " bands");
         const Asset asset = make_scene(terms, eta, bands);
