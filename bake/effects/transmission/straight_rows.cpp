@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numbers>
 #include <vector>
 
 #include "bake/base/frame.h"
-#include "bake/base/rng.h"
 #include "bake/effects/transmission/view_fit.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
@@ -16,14 +14,6 @@
 
 namespace opaline::bake {
 namespace {
-
-// Vertices at one place, as along seams, have the same random numbers, in whatever order a file
-// lists them.
-std::array<float, 4> random_at(std::uint64_t seed, glm::vec3 place) {
-    const auto x = std::bit_cast<std::uint32_t>(place.x), y = std::bit_cast<std::uint32_t>(place.y),
-               z = std::bit_cast<std::uint32_t>(place.z);
-    return random_uniform(seed, RandomStage::straight_views, x | std::uint64_t{y} << 32, z);
-}
 
 // The light of exits over the cube map, row by row.
 class Splat {
@@ -63,6 +53,29 @@ class Splat {
         }
     }
 
+    // Limits each texel's rows. What this takes from their sum over texels is returned to all
+    // texels in proportion to their mean: each view shows as much of even light as before.
+    void limit(const ViewLimit& limit) {
+        const std::size_t texels = row_.size();
+        std::vector<double> mean(texels), taken(terms_);
+        for (std::uint32_t b = 0; b < row_.bands; ++b) {
+            double sum = 0;
+            std::fill(taken.begin(), taken.end(), 0.0);
+            for (std::size_t j = 0; j < texels; ++j) {
+                const double area = solid_angle_[j % solid_angle_.size()];
+                add_totals(j, b, area, taken);
+                mean[j] = limit.apply(&at(j, 0, b), row_.bands);
+                add_totals(j, b, -area, taken);
+                sum += area * mean[j];
+            }
+            for (std::size_t j = 0; j < texels && sum > 0; ++j) {
+                for (std::uint32_t k = 0; k < terms_; ++k) {
+                    at(j, k, b) += static_cast<float>(taken[k] * mean[j] / sum);
+                }
+            }
+        }
+    }
+
     // To the rows from the first one on.
     void add_to(const DenseRow& row) const {
         const std::size_t values = std::size_t{terms_} * row_.bands;
@@ -82,6 +95,16 @@ class Splat {
     }
 
   private:
+    float& at(std::size_t texel, std::uint32_t k, std::uint32_t band) {
+        return dense_[(texel * terms_ + k) * row_.bands + band];
+    }
+
+    void add_totals(std::size_t texel, std::uint32_t band, double area, std::span<double> total) {
+        for (std::uint32_t k = 0; k < terms_; ++k) {
+            total[k] += area * static_cast<double>(at(texel, k, band));
+        }
+    }
+
     static constexpr std::uint32_t kParts = 16;
     static constexpr std::size_t kMostValues = 27;  // nine harmonics in three bands
 
@@ -98,15 +121,43 @@ struct PointViews {
     StraightLight found;
 };
 
-PointViews follow_views(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
-                        std::uint64_t seed, std::uint64_t& rays) {
-    const std::array<float, 4> u = random_at(seed, point.position);
+// The same spiral around every normal: spirals turned at random each miss something else, which
+// draws dots.
+PointViews follow_views(const StraightBody& body, const BodyPoint& point,
+                        const StraightStart& start, std::uint32_t views, std::uint64_t& rays) {
     PointViews own;
-    own.set = spread_views(point.normal, body.eta, views, {u[0], u[1]});
-    rays += follow_straight(body, make_straight_start(body, point, rays), own.set.seen, own.found);
+    own.set = spread_views(point.normal, body.eta, views, {0.5f, 0.5f});
+    rays += follow_straight(body, start, own.set.seen, own.found);
     leave_out(own.set, own.found.past);
     return own;
 }
+
+// Of even light, what arrives from the sky and from surfaces, in the brightest band.
+double share_found(const PointViews& own, std::uint32_t bands) {
+    std::array<double, 3> share{};
+    for (const auto* exits : {&own.found.exits, &own.found.blocked}) {
+        for (const StraightExit& exit : *exits) {
+            for (std::uint32_t b = 0; b < bands; ++b) {
+                share[b] += own.set.weight[exit.view] * static_cast<double>(exit.weight[b]);
+            }
+        }
+    }
+    return *std::max_element(share.begin(), share.end());
+}
+
+PointViews follow_enough(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
+                         std::uint64_t& rays) {
+    constexpr double kLittle = 0.02;
+    const StraightStart start = make_straight_start(body, point, rays);
+    PointViews own = follow_views(body, point, start, views, rays);
+    return share_found(own, body.bands) > kLittle
+               ? follow_views(body, point, start, kFinerViews * views, rays)
+               : own;
+}
+
+// Under a sun at one rim of the views, a fit of degree 1 shows three times its mean light, below
+// zero, at the other rim. Nine rows would lose too much of how views differ.
+constexpr std::uint32_t kLimitedTerms = 4;
 
 // [sr], of one of so many views.
 double solid_angle_of(double views) {
@@ -127,11 +178,11 @@ std::uint32_t straight_terms(const RowLayout& layout) {
 }
 
 std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
-                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row,
+                           const RowLayout& layout, const DenseRow& row,
                            const OtherLight* surfaces) {
     if (point.normal == glm::vec3(0)) return 0;
     std::uint64_t rays = 0;
-    const PointViews own = follow_views(body, point, views, seed, rays);
+    const PointViews own = follow_enough(body, point, views, rays);
     const auto& set = own.set;
     const auto& found = own.found;
     const bool sees_surfaces = surfaces != nullptr && surfaces->add_seen && !found.blocked.empty();
@@ -164,6 +215,9 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
     for (const StraightExit& exit : found.exits) {
         splat.add(exit, factors_of(exit));
     }
+    if (terms == kLimitedTerms) {
+        splat.limit({set, point.normal, body.eta, terms});
+    }
     splat.add_to(row);
     if (sees_surfaces) {
         std::vector<SurfaceView> looks;
@@ -178,10 +232,11 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
 }
 
 CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
-                           std::uint64_t seed, std::uint64_t& rays) {
+                           std::uint64_t& rays) {
     CrossingViews crossing{{}, solid_angle_of(views)};
     if (point.normal == glm::vec3(0)) return crossing;
-    const PointViews own = follow_views(body, point, views, seed, rays);
+    const StraightStart start = make_straight_start(body, point, rays);
+    const PointViews own = follow_views(body, point, start, views, rays);
     const double leaves = 1 - fresnel_moments(body.eta).external;
     crossing.views.reserve(own.found.blocked.size());
     for (const StraightExit& exit : own.found.blocked) {

@@ -16,16 +16,19 @@ double spread_cosine(double views);
 /// Harmonics of the view that a subject's rows hold light in that crosses it: 1, 4 or 9.
 std::uint32_t straight_terms(const RowLayout& layout);
 
+/// So many times the views of a receiver are followed where these show more than a little.
+inline constexpr std::uint32_t kFinerViews = 4;
+
 /// Adds light that crosses the body straight to the rows of a receiver (README.md, "Rows"), from
-/// `views` of it. `surfaces`: what surfaces send that stand before the sky; null: they are black.
-/// Random numbers belong to the seed and the receiver's place. Any thread; returns the rays traced.
+/// `views` of it or kFinerViews times as many. `surfaces`: what surfaces send that stand before the
+/// sky; null: they are black. Any thread; returns the rays traced.
 std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
-                           std::uint64_t seed, const RowLayout& layout, const DenseRow& row,
+                           const RowLayout& layout, const DenseRow& row,
                            const OtherLight* surfaces = nullptr);
 
 /// The surfaces from which light crosses the body straight to a point, by `views` of it, as of
 /// EffectDescriptor::make_look_through. Counts `rays`.
 CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
-                           std::uint64_t seed, std::uint64_t& rays);
+                           std::uint64_t& rays);
 
 }  // namespace opaline::bake

@@ -163,11 +163,13 @@ Work straight_rows_work(const SubjectCost& cost, double views) {
     const auto texels = static_cast<double>(formats::cubemap_texels(cost.input.knobs.cubemap_size));
     const double rows = straight_terms(cost.layout) * cost.layout.bands();
     // Where a medium is dense, one short flight is all of a view, and few receivers have exits.
-    constexpr double kOneFlight = 0.2;
+    // Where it is clear, more views are followed after them.
+    constexpr double kOneFlight = 0.2, kFiner = kFinerViews;
     const double crossing = thin_share(cost.medium(), cost.facts);
     const double view = kStraightView.at(cost.input.triangles);
-    return {0, cost.receivers * (views * view * (kOneFlight + (1 - kOneFlight) * crossing) +
-                                 crossing * cells(texels, views, rows) * kStraightCell)};
+    return {0,
+            cost.receivers * (views * view * (kOneFlight + (1 + kFiner - kOneFlight) * crossing) +
+                              crossing * cells(texels, kFiner * views, rows) * kStraightCell)};
 }
 
 Work straight_truth_work(const SubjectCost& cost, double views) {
@@ -198,14 +200,13 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     return add_straight(static_cast<const Body&>(*inputs.own.prepared).body, receiver.inside,
-                        whole(inputs.knobs, kStraightViews), inputs.knobs.seed, inputs.layout, row,
-                        inputs.light());
+                        whole(inputs.knobs, kStraightViews), inputs.layout, row, inputs.light());
 }
 
 LookThrough make_look_through(const EffectInputs& inputs) {
-    return [body = make_straight_body(inputs), views = whole(inputs.knobs, kStraightViews),
-            seed = inputs.knobs.seed](const BodyPoint& point, std::uint64_t& rays) {
-        return look_through(body, point, views, seed, rays);
+    return [body = make_straight_body(inputs), views = whole(inputs.knobs, kStraightViews)](
+               const BodyPoint& point, std::uint64_t& rays) {
+        return look_through(body, point, views, rays);
     };
 }
 

@@ -190,6 +190,47 @@ void limit_fit(const TransmissionViews& views, std::uint32_t terms, std::span<co
     }
 }
 
+ViewLimit::ViewLimit(const TransmissionViews& views, glm::vec3 normal, double eta,
+                     std::uint32_t terms)
+    : mean_(terms) {
+    std::vector<double> value(terms);
+    for (std::size_t i = 0; i < views.seen.size(); ++i) {
+        eval_harmonics(views.seen[i], value);
+        for (std::size_t k = 0; k < terms; ++k) {
+            mean_[k] += views.weight[i] * value[k];
+        }
+    }
+    constexpr std::uint32_t kProbes = 24;
+    for (const glm::vec3& seen : spread_views(normal, eta, kProbes, {0.9f, 0}).seen) {
+        eval_harmonics(seen, value);
+        probe_.insert(probe_.end(), value.begin(), value.end());
+    }
+}
+
+double ViewLimit::apply(float* first, std::size_t stride) const {
+    const std::size_t terms = mean_.size();
+    const auto sum_with = [&](const double* harmonic) {
+        double sum = 0;
+        for (std::size_t k = 0; k < terms; ++k) {
+            sum += harmonic[k] * static_cast<double>(first[k * stride]);
+        }
+        return sum;
+    };
+    const double mean = std::max(0.0, sum_with(mean_.data()));
+    double least = mean;
+    for (std::size_t i = 0; i < probe_.size(); i += terms) {
+        least = std::min(least, sum_with(&probe_[i]));
+    }
+    if (least >= 0) return mean;
+    const auto scale = static_cast<float>(mean / (mean - least));
+    const auto constant = static_cast<float>(mean / (0.5 * std::numbers::inv_sqrtpi));
+    first[0] = constant + scale * (first[0] - constant);
+    for (std::size_t k = 1; k < terms; ++k) {
+        first[k * stride] *= scale;
+    }
+    return mean;
+}
+
 ViewKernel::ViewKernel(glm::vec3 normal, double eta, std::uint32_t terms, glm::vec3 seen) {
     if (terms == 1) return;
     constexpr std::uint32_t kViews = 2048;

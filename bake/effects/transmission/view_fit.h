@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -32,6 +33,20 @@ std::vector<float> fit_views(const TransmissionViews& views, std::uint32_t terms
 /// view shows of even light, >= 0. `terms` > 1.
 void limit_fit(const TransmissionViews& views, std::uint32_t terms, std::span<const double> even,
                std::span<float> factors);
+
+/// Keeps what rows by view show of light from one direction >= 0 in every view (README.md,
+/// "Views"). Immutable once made.
+class ViewLimit {
+  public:
+    /// `terms` > 1.
+    ViewLimit(const TransmissionViews& views, glm::vec3 normal, double eta, std::uint32_t terms);
+    /// Scales rows k at first[k * stride], around their mean over the views, >= 0. Returns it.
+    double apply(float* first, std::size_t stride) const;
+
+  private:
+    std::vector<double> mean_;   // of each harmonic over the views
+    std::vector<double> probe_;  // harmonics of views up to the rim, view by view
+};
 
 /// That fit, over all views there are, seen along `seen`: the mean over views w' of k(w') times
 /// the function. Immutable once made.

@@ -1,5 +1,6 @@
 #include "bake/effects/transmission/straight_rows.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -30,7 +31,7 @@ std::vector<float> rows_of(const tests::CrossedBody& crossed, std::size_t vertex
     const BodyPoint point{p.position[vertex], p.normal[vertex],
                           p.position[vertex] - 1e-4f * p.normal[vertex], 0};
     const DenseRow row{values, kSize, terms, 1};
-    add_straight(crossed.body, point, views, 0, layout_of(terms), row);
+    add_straight(crossed.body, point, views, layout_of(terms), row);
     std::vector<float> scratch(kSize * kSize);
     for (std::size_t face = 0; face < 6 * terms; ++face) {
         formats::haar_inverse(std::span(values).subspan(face * kSize * kSize, kSize * kSize), kSize,
@@ -101,6 +102,66 @@ TEST(StraightRows, LightOfAViewIsSpreadOverADiscAroundItsExitAndKeepsItsEnergy) 
     const auto steep = [](glm::vec3 w) { return w.y < -std::numbers::sqrt2_v<float> / 2; };
     EXPECT_NEAR(seen_along(values, 1, {0, 1, 0}, steep), 0.5, 0.05);
     EXPECT_NEAR(seen_along(values, 1, {0, 1, 0}, [](glm::vec3 w) { return w.y < 0.3f; }), 1, 0.01);
+}
+
+// Wherever its points are, behind a slab without an end is the same: no vertex has views of its own
+// between those of others.
+TEST(StraightRows, PointsOfASlabShowTheSame) {
+    tests::Primitive mesh = tests::make_crossed_slab(0.01f);
+    mesh.position.push_back(mesh.position.back() + glm::vec3(0.0123f, 0, -0.0077f));
+    mesh.normal.push_back(mesh.normal.back());
+    const auto slab = tests::make_crossed({mesh}, 1.5, 0);
+    const auto one = rows_of(*slab, mesh.position.size() - 1, 4, 32);
+    const auto other = rows_of(*slab, mesh.position.size() - 2, 4, 32);
+    double difference = 0, size = 0;
+    for (std::size_t i = 0; i < one.size(); ++i) {
+        difference += std::abs(double{one[i]} - double{other[i]});
+        size += std::abs(double{one[i]});
+    }
+    EXPECT_LT(difference, 1e-3 * size);
+}
+
+// A sun in any one texel, which the least squares of few views would answer by light below zero on
+// the other side of the view.
+TEST(StraightRows, NoSunMakesAViewDarkerThanNothing) {
+    const auto ball = tests::make_crossed({tests::make_sphere(3)}, 1.5, 0.2f);
+    const glm::vec3 normal = ball->scene.primitives[0].normal[17];
+    const std::size_t texels = formats::cubemap_texels(kSize);
+    constexpr std::uint32_t kTerms = 4;
+    const auto values = rows_of(*ball, 17, kTerms, 64);
+    double least = 0, most = 0;
+    for (const glm::vec3 seen : spread_views(normal, 1.5, 100, {0.5f, 0}).seen) {
+        std::vector<float> h(kTerms);
+        formats::eval_spherical_harmonics({seen.x, seen.y, seen.z}, h);
+        for (std::size_t j = 0; j < texels; ++j) {
+            double sum = 0;
+            for (std::uint32_t k = 0; k < kTerms; ++k) {
+                sum += double{h[k]} * double{values[k * texels + j]};
+            }
+            least = std::min(least, sum);
+            most = std::max(most, sum);
+        }
+    }
+    EXPECT_GT(least, -0.06 * most);
+}
+
+// Under a sky of which one half is bright, of vertices of a ball of glass.
+TEST(StraightRows, FewViewsOfABallErrByLittle) {
+    const auto ball = tests::make_crossed({tests::make_sphere(2)}, 1.5, 0);
+    const tests::Primitive& mesh = ball->scene.primitives[0];
+    const auto bright = [](glm::vec3 w) { return w.y + 0.3f * w.x > 0; };
+    constexpr double kOutside = 0.7;  // of the normal: views at 45 degrees and a half
+    double squares = 0;
+    std::size_t count = 0;
+    for (std::size_t v = 0; v < mesh.position.size(); v += 16, ++count) {
+        const glm::vec3 side = glm::normalize(glm::cross(mesh.normal[v], glm::vec3(0.3f, 0.2f, 1)));
+        const auto tilt = static_cast<float>(kOutside / 1.5);
+        const glm::vec3 seen = std::sqrt(1 - tilt * tilt) * mesh.normal[v] + tilt * side;
+        const double few = seen_along(rows_of(*ball, v, 4, 32), 4, seen, bright);
+        const double many = seen_along(rows_of(*ball, v, 4, 512), 4, seen, bright);
+        squares += (few - many) * (few - many);
+    }
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(count)), 0.025);
 }
 
 // A matched ball so dense that only views past the facets of its own vertex could bring light.
