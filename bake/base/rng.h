@@ -20,7 +20,6 @@ enum class RandomStage : std::uint32_t {
     surface_probes = 9,
     body_walk = 10,
     true_body_walk = 11,
-    straight_views = 12,
     true_straight_views = 13,
     volume_walk = 14,
     volume_rays = 15,
