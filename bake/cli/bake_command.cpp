@@ -227,10 +227,40 @@ int run(const BakeCommand& options) {
     return kExitSuccess;
 }
 
-// What a first bake needs, then the rest.
-void group_bake_options(CLI::App& command) {
-    group_options(command,
-                  {{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
+}  // namespace
+
+void add_bake_command(Program& program) {
+    auto [command, options] =
+        add_command<BakeCommand>(program, "bake", "Bake a scene into an .opal file", run);
+    add_scene_options(command, options.scene);
+    add_error_option(command, options.scene);
+    command.add_flag("--check-model", options.scene.bake.check_model,
+                     "also measure how far the physical model is from a Monte Carlo reference "
+                     "(seconds to a minute); the report gets `model_error`. Volumes are measured "
+                     "in every bake, and more closely with this");
+    command
+        .add("-o,--output", "OUT.opal REQUIRED", file_name(options.output),
+             "the .opal file to write")
+        .required();
+    command.add("--report", file_name(options.report), "write a JSON report: plan, stages, error");
+    command.add("--depfile", file_name(options.depfile),
+                "write the files read as a rule for make and ninja");
+    command.add_flag("--receiver-errors", options.extras.receiver_errors,
+                     "also store how far the rows of each vertex are from those before "
+                     "coefficients were dropped and rounded (4 bytes a vertex): a map of it is "
+                     "shown by `view` and `render --receiver-errors`");
+    command.add("--compression",
+                one_of(options.compression, {{"none", formats::Compression::none},
+                                             {"fast", formats::Compression::fast},
+                                             {"best", formats::Compression::best}}),
+                "of the file: fast or best (slow to write) take a third to a half of the bytes, "
+                "which a program decodes as it loads them; rows of none are used in place. "
+                "Predicted sizes are those of none");
+    command.add_flag("--verbose", options.verbose,
+                     "also print what is simulated and why, and what each stage took");
+    add_progress_option(command, options.progress);
+    // What a first bake needs, then the rest.
+    command.group({{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
                    {"What is simulated",
                     {"--effects", "--separate-terms", "--multiple-model", "--volume-method"}},
                    {"Machine", {"--threads", "--memory-limit"}},
@@ -238,50 +268,7 @@ void group_bake_options(CLI::App& command) {
                     {"--report", "--depfile", "--progress", "--verbose", "--check-model",
                      "--receiver-errors"}}},
                   "Knobs, which --quality and --error set");
-}
-
-}  // namespace
-
-void add_bake_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<BakeCommand>();
-    CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
-    add_scene_options(*command, options->scene);
-    add_error_option(*command, options->scene);
-    command->add_flag(
-        "--check-model", options->scene.bake.check_model,
-        "also measure how far the physical model is from a Monte Carlo reference "
-        "(seconds to a minute); the report gets `model_error`. Volumes are measured in "
-        "every bake, and more closely with this");
-    command->add_option("-o,--output", options->output, "the .opal file to write")
-        ->required()
-        ->check(file_name())
-        ->option_text("OUT.opal REQUIRED");
-    command->add_option("--report", options->report, "write a JSON report: plan, stages, error")
-        ->check(file_name());
-    command
-        ->add_option("--depfile", options->depfile,
-                     "write the files read as a rule for make and ninja")
-        ->check(file_name());
-    command->add_flag(
-        "--receiver-errors", options->extras.receiver_errors,
-        "also store how far the rows of each vertex are from those before coefficients were "
-        "dropped and rounded (4 bytes a vertex): a map of it is shown by `view` and `render "
-        "--receiver-errors`");
-    command
-        ->add_option("--compression", options->compression,
-                     "of the file: fast or best (slow to write) take a third to a half of the "
-                     "bytes, which a program decodes as it loads them; rows of none are used in "
-                     "place. Predicted sizes are those of none")
-        ->transform(one_of<formats::Compression>({{"none", formats::Compression::none},
-                                                  {"fast", formats::Compression::fast},
-                                                  {"best", formats::Compression::best}}))
-        ->option_text("none|fast|best [fast]");
-    command->add_flag("--verbose", options->verbose,
-                      "also print what is simulated and why, and what each stage took");
-    add_progress_option(*command, options->progress);
-    group_bake_options(*command);
-    command->footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
+    command.footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
 }
 
 }  // namespace opaline::cli

@@ -257,10 +257,9 @@ PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& abov
     return parts;
 }
 
-void add_time_option(CLI::App& command, double& time) {
-    command.add_option("--time", time, "move cloud layers by their wind times T [s]")
-        ->check(real_number(-1e9, 1e9))
-        ->option_text("T [0]");
+void add_time_option(const Command& command, double& time) {
+    command.add("--time", "T [0]", real_number(time, -1e9, 1e9),
+                "move cloud layers by their wind times T [s]");
 }
 
 }  // namespace opaline::cli

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bake/cli/command.h"
 #include "formats/gltf/import_gltf.h"
 #include "formats/media/load_clouds.h"
 #include "formats/opal/asset.h"
@@ -91,6 +90,6 @@ PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& abov
                           unsigned threads);
 
 /// The option `--time` of commands that light layers. Valid range: 1e9 s on either side of 0.
-void add_time_option(CLI::App& command, double& time);
+void add_time_option(const Command& command, double& time);
 
 }  // namespace opaline::cli

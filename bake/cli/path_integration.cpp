@@ -13,34 +13,25 @@ using formats::ErrorKind;
 using formats::make_error;
 using formats::TermSet;
 
-void add_path_integration_options(CLI::App& command, PathIntegrationOptions& options) {
-    command
-        .add_option(
-            "--method", options.method,
-            "monte-carlo: without bias, with noise; path-integration: pictures of volumes "
-            "without noise, along most probable paths of light, wrong by 20 to 40 % (RMS over "
-            "a picture), most at rims and where light comes from behind the eye: up to a "
-            "factor of 2. It knows opaque surfaces, diffuse and without interreflection, and "
-            "writes no .var.exr")
-        ->transform(
-            one_of<ReferenceMethod>({{"monte-carlo", ReferenceMethod::monte_carlo},
-                                     {"path-integration", ReferenceMethod::path_integration}}))
-        ->option_text("monte-carlo|path-integration [monte-carlo]");
-    options.renormalise_option =
-        command
-            .add_option(
-                "--renormalise", options.renormalise,
-                "path-integration: scale light scattered twice or more so that a volume "
-                "without absorption vanishes under even light; off saves the seconds that this "
-                "takes before the first pixel")
-            ->transform(one_of<bool>({{"on", true}, {"off", false}}))
-            ->option_text("on|off [on]");
+void add_path_integration_options(const Command& command, PathIntegrationOptions& options) {
+    command.add(
+        "--method",
+        one_of(options.method, {{"monte-carlo", ReferenceMethod::monte_carlo},
+                                {"path-integration", ReferenceMethod::path_integration}}),
+        "monte-carlo: without bias, with noise; path-integration: pictures of volumes without "
+        "noise, along most probable paths of light, wrong by 20 to 40 % (RMS over a picture), most "
+        "at rims and where light comes from behind the eye: up to a factor of 2. It knows opaque "
+        "surfaces, diffuse and without interreflection, and writes no .var.exr");
+    options.renormalise_option = command.add(
+        "--renormalise", one_of(options.renormalise, {{"on", true}, {"off", false}}),
+        "path-integration: scale light scattered twice or more so that a volume without absorption "
+        "vanishes under even light; off saves the seconds that this takes before the first pixel");
 }
 
 void check_method(const PathIntegrationOptions& options,
                   std::span<const MonteCarloOption> monte_carlo, TermSet terms) {
     if (!options.is_chosen()) {
-        if (options.renormalise_option->count() == 0) return;
+        if (!options.renormalise_option.is_given()) return;
         refuse_usage("--renormalise", "Monte Carlo needs no renormalisation",
                      "leave it out, or give --method path-integration");
     }
@@ -63,7 +54,7 @@ namespace {
 // Fidelity "paper" of a scene's volumes: what it contradicts, and a warning.
 void check_paper(const PathIntegrationOptions& options, const formats::Scene& scene) {
     if (!bake::has_paper_fidelity(scene)) return;
-    if (options.renormalise && options.renormalise_option->count() > 0) {
+    if (options.renormalise && options.renormalise_option.is_given()) {
         refuse(make_error(ErrorKind::usage, scene.volumes.front().name, "--renormalise",
                           "the paper's formulas have no renormalisation, and fidelity is 'paper'",
                           "leave it out, or make the fidelity physical"));
@@ -93,8 +84,8 @@ void make_path_picture(const PathPicture& picture, const bake::PathSpace& space,
     require(write_picture(picture.output, {radiance.width, radiance.height, radiance.pixel},
                           picture.exposure));
     print_note(fmt::format(
-        "{}: path integration{}, {} rays for each of {} pixels, {}, of which {} "
-        "before the first pixel",
+        "{}: path integration{}, {} rays for each of {} pixels, {}, of which {} before the first "
+        "pixel",
         printable(picture.output), bake::has_paper_fidelity(scene) ? " with fidelity paper" : "",
         wanted.rays, radiance.pixel.size(), format_seconds(image.seconds),
         format_seconds(image.preparation_seconds)));

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <span>
 #include <string>
 
 #include "bake/base/context.h"
+#include "bake/cli/command.h"
 #include "bake/reference/path.h"
 #include "formats/opal/result.h"
 #include "runtime/picture/camera.h"
@@ -19,11 +19,11 @@ enum class ReferenceMethod { monte_carlo, path_integration };
 struct PathIntegrationOptions {
     ReferenceMethod method = ReferenceMethod::monte_carlo;
     bool renormalise = true;
-    CLI::Option* renormalise_option = nullptr;  ///< tells whether it was given
+    Option renormalise_option;  ///< tells whether it was given
 
     bool is_chosen() const { return method == ReferenceMethod::path_integration; }
 };
-void add_path_integration_options(CLI::App& command, PathIntegrationOptions& options);
+void add_path_integration_options(const Command& command, PathIntegrationOptions& options);
 
 /// An option of Monte Carlo alone, and whether it was given.
 struct MonteCarloOption {

@@ -67,12 +67,13 @@ formats::Asset make_stand_in(const formats::Scene& scene) {
 std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceOptions& options,
                                                        const bake::HitScene& surfaces,
                                                        std::uint32_t samples) {
-    if (options.texture_filter == "none") return nullptr;
+    if (options.texture_filter == TextureFilter::none) return nullptr;
     bake::TextureFiltering filtering{bake::make_scene_pyramids(surfaces.scene())};
     if (!filtering.pyramids.any()) return nullptr;
     filtering.step = 1 / std::sqrt(static_cast<float>(samples));
-    filtering.gradient_limit =
-        options.texture_filter == "limited" ? 0.7f : std::numeric_limits<float>::infinity();
+    filtering.gradient_limit = options.texture_filter == TextureFilter::limited
+                                   ? 0.7f
+                                   : std::numeric_limits<float>::infinity();
     filtering.extent = 2 * glm::length(surfaces.half_size());
     return std::make_unique<bake::TextureFiltering>(std::move(filtering));
 }
@@ -167,11 +168,12 @@ int run(const ReferenceOptions& options) {
     }
     paths.terms = require(formats::parse_terms(options.terms, formats::TermSet::all, "--terms"));
     require(check_light(options.light));
-    const MonteCarloOption monte_carlo[] = {{"--receivers", options.receivers > 0},
-                                            {"--seconds", options.seconds > 0},
-                                            {"--max-depth", options.max_depth > 0},
-                                            {"--texture-filter", options.texture_filter != "none"},
-                                            {"--seed", options.seed > 0}};
+    const MonteCarloOption monte_carlo[] = {
+        {"--receivers", options.receivers > 0},
+        {"--seconds", options.seconds > 0},
+        {"--max-depth", options.max_depth > 0},
+        {"--texture-filter", options.texture_filter != TextureFilter::none},
+        {"--seed", options.seed > 0}};
     check_method(options.paths, monte_carlo, paths.terms);
     check_reference_paths(options, {});
     const auto imported =
@@ -216,14 +218,13 @@ int run(const ReferenceOptions& options) {
 
 }  // namespace
 
-void add_reference_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<ReferenceOptions>();
-    CLI::App* command = app.add_subcommand(
-        "reference", "Ground truth of a scene by Monte Carlo: a picture, or radiance at vertices");
-    add_reference_options(*command, *options);
-    command->footer(
+void add_reference_command(Program& program) {
+    auto [command, options] = add_command<ReferenceOptions>(
+        program, "reference",
+        "Ground truth of a scene by Monte Carlo: a picture, or radiance at vertices", run);
+    add_reference_options(command, options);
+    command.footer(
         "Example:\n  opaline reference scene.glb --light studio --receivers 100 -o truth.csv");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -23,9 +21,13 @@ void check_traceable(const formats::Scene& scene);
 /// The scene's bodies as a bake sees them, with warnings about faults of their meshes.
 bake::OrientedBodies close_bodies(const formats::Scene& scene);
 
+/// What textures are looked up over (bake/reference/path_filter.h).
+enum class TextureFilter { none, footprint, limited };
+
 /// Of `opaline reference`, as its help says; 0: not given.
 struct ReferenceOptions {
-    std::string scene, media, light, output, terms, texture_filter = "none";
+    std::string scene, media, light, output, terms;
+    TextureFilter texture_filter = TextureFilter::none;
     std::vector<std::string> allowed_folders;
     CameraOptions camera;
     PathIntegrationOptions paths;
@@ -35,11 +37,11 @@ struct ReferenceOptions {
     std::optional<float> exposure;  ///< [EV]; nothing: 0
     unsigned threads = 0;
     ProgressStyle progress = ProgressStyle::automatic;
-    std::vector<const CLI::Option*> picture_options;  ///< that say nothing of receivers
+    std::vector<Option> picture_options;  ///< that say nothing of receivers
 };
 
 /// `options` must outlive the parsing.
-void add_reference_options(CLI::App& command, ReferenceOptions& options);
+void add_reference_options(const Command& command, ReferenceOptions& options);
 
 /// Where the variance beside OUT.exr or OUT.png goes: OUT.var.exr.
 std::string variance_path(const std::string& output);
