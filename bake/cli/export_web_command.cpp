@@ -180,7 +180,7 @@ std::string name_of_light(const std::string& spec, const std::vector<runtime::Pa
 std::vector<runtime::PageLight> open_lights(const std::vector<std::string>& specs) {
     std::vector<runtime::PageLight> lights;
     for (const std::string& spec : specs) {
-        auto light = require(open_light(spec, 0));
+        auto light = open_light(spec, 0);
         lights.push_back({name_of_light(spec, lights), std::move(light.environment)});
     }
     return lights;
@@ -190,7 +190,7 @@ int run(const ExportWebCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     require(check_folder(options.folder, runtime::is_page_file));
     for (const std::string& light : options.lights) {
-        require(check_light(light));
+        check_light(light);
     }
     const auto asset = require(open_asset(options.path));
     const formats::AssetView& view = asset.loaded.view;

@@ -167,7 +167,7 @@ int run(const ReferenceOptions& options) {
         paths.max_depth = options.max_depth;
     }
     paths.terms = require(formats::parse_terms(options.terms, formats::TermSet::all, "--terms"));
-    require(check_light(options.light));
+    check_light(options.light);
     const MonteCarloOption monte_carlo[] = {
         {"--receivers", options.receivers > 0},
         {"--seconds", options.seconds > 0},
@@ -177,18 +177,13 @@ int run(const ReferenceOptions& options) {
     check_method(options.paths, monte_carlo, paths.terms);
     check_reference_paths(options, {});
     const auto imported =
-        require(open_scene(options.scene,
-                           {options.metres_per_unit,
-                            {options.allowed_folders.begin(), options.allowed_folders.end()},
-                            {},
-                            options.smooth_normals},
-                           options.media, formats::CloudDetail::fields));
+        open_scene(options.scene, options.import, options.media, formats::CloudDetail::fields);
     check_reference_paths(options, imported.scene.inputs);
     check_traceable(imported.scene);
     if (options.paths.is_chosen()) {
         require(bake::check_path_scene(imported.scene));
     }
-    const auto light = require(open_light(options.light, options.rotate_light));
+    const auto light = open_light(options.light, options.rotate_light);
     // So that an unwritable folder is found out before the work.
     require(formats::AtomicFile::create(options.output));
     require(check_threads(options.threads));

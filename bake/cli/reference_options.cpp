@@ -118,11 +118,7 @@ void check_reference_paths(const ReferenceOptions& options,
 }
 
 void add_reference_options(const Command& command, ReferenceOptions& options) {
-    command
-        .add("scene", "SCENE", text(options.scene),
-             "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a media "
-             "file alone")
-        .required();
+    add_scene_argument(command, options);
     command.add("--light", "ENV", text(options.light), light_help()).required();
     command
         .add("-o,--output", "OUT.exr|.png|.csv", file_name(options.output),
@@ -131,11 +127,8 @@ void add_reference_options(const Command& command, ReferenceOptions& options) {
         .required();
     command.add("--media", "FILE.json", file_name(options.media),
                 "what translucent materials are made of; volumes of smoke or cloud");
-    add_allow_path_option(command, options.allowed_folders);
-    command.add("--metres-per-unit", "X [1]",
-                real_number(options.metres_per_unit, kLeastUnit, kMostUnit),
-                "length of one unit of the scene file");
-    add_smooth_normals_option(command, options.smooth_normals);
+    add_allow_path_option(command, options);
+    add_unit_options(command, options);
     add_path_integration_options(command, options.paths);
     add_estimate_options(command, options);
     add_camera_options(command, options.camera);

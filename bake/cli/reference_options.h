@@ -8,6 +8,7 @@
 #include "bake/cli/path_integration.h"
 #include "bake/cli/picture_options.h"
 #include "bake/cli/progress.h"
+#include "bake/cli/scene_options.h"
 #include "bake/scene/orient_bodies.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
@@ -25,13 +26,12 @@ bake::OrientedBodies close_bodies(const formats::Scene& scene);
 enum class TextureFilter { none, footprint, limited };
 
 /// Of `opaline reference`, as its help says; 0: not given.
-struct ReferenceOptions {
-    std::string scene, media, light, output, terms;
+struct ReferenceOptions : SceneSource {
+    std::string light, output, terms;
     TextureFilter texture_filter = TextureFilter::none;
-    std::vector<std::string> allowed_folders;
     CameraOptions camera;
     PathIntegrationOptions paths;
-    double metres_per_unit = 1, smooth_normals = 0, rotate_light = 0, seconds = 0;
+    double rotate_light = 0, seconds = 0;
     std::uint32_t receivers = 0, samples = 0, max_depth = 0;
     std::uint64_t seed = 0;
     std::optional<float> exposure;  ///< [EV]; nothing: 0

@@ -124,11 +124,11 @@ int run(const RelightCommand& options) {
     }
     const auto terms =
         require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
-    require(check_light(options.light));
+    check_light(options.light);
     const auto asset = require(open_asset(options.path));
     require(runtime::check_terms(asset.loaded.view, terms, options.path));
     const auto emitters = require(parse_emitters(asset.loaded.view.emitters, options.emitters));
-    const auto light = require(open_light(options.light, options.rotate_light));
+    const auto light = open_light(options.light, options.rotate_light);
     const formats::AssetView& view = asset.loaded.view;
     const LightWithLayers layers = light_layers_of(view, light, options.time, options.threads);
     const OpenedLight mirrored = layers.mirrored(light);

@@ -96,7 +96,7 @@ int run(const RenderCommand& given) {
     require(check_outputs(outputs, inputs));
     const auto terms =
         require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
-    require(check_light(options.light));
+    check_light(options.light);
     const auto asset = require(open_asset(options.path));
     if (options.error_white > 0) {
         draw_errors(options, asset);
@@ -112,7 +112,7 @@ int run(const RenderCommand& given) {
     const auto emitters = require(parse_emitters(view.emitters, options.emitters));
     check_motion(options, view);
     const auto camera = make_camera(options.camera, view);
-    const auto light = require(open_light(options.light, options.rotate_light));
+    const auto light = open_light(options.light, options.rotate_light);
     const std::uint32_t frames = options.frame.frames;
     const std::uint32_t step = options.time_step ? 1 : frames;  // frames of one time
     Drawing drawing;

@@ -34,13 +34,13 @@ OptionValue coefficients_or_all(std::uint32_t& coefficients) {
     }};
 }
 
-OptionValue folders(std::vector<std::string>& to) {
+OptionValue folders(std::vector<std::filesystem::path>& to) {
     return {[&to](const std::string& text) {
                 std::error_code ignored;
                 if (!std::filesystem::is_directory(text, ignored)) {
                     return fmt::format("'{}' is not a folder", shorten(text));
                 }
-                to.push_back(text);
+                to.emplace_back(text);
                 return std::string();
             },
             OptionValue::Count::repeated};
@@ -105,27 +105,35 @@ OptionValue knob_value(const bake::KnobSpec& knob, bake::BakeOptions& options) {
 
 }  // namespace
 
-void add_allow_path_option(const Command& command, std::vector<std::string>& allowed) {
-    command.add("--allow-path", "DIR", folders(allowed),
+void add_scene_argument(const Command& command, SceneSource& source) {
+    command
+        .add("scene", "SCENE", text(source.scene),
+             "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a media "
+             "file alone")
+        .required();
+}
+
+void add_allow_path_option(const Command& command, SceneSource& source) {
+    command.add("--allow-path", "DIR", folders(source.import.allowed_folders),
                 "folder whose files the scene and its media may name too, besides those in their "
                 "own folders; may be repeated");
 }
 
-void add_smooth_normals_option(const Command& command, double& degrees) {
-    command.add("--smooth-normals", "DEGREES [0]", real_number(degrees, 0, 180),
+void add_unit_options(const Command& command, SceneSource& source) {
+    // From a tenth of a nanometre to a light year.
+    command.add("--metres-per-unit", "X [1]",
+                real_number(source.import.metres_per_unit, 1e-10, 1e16),
+                "length of one unit of the scene file");
+    command.add("--smooth-normals", "DEGREES [0]", real_number(source.import.smooth_angle, 0, 180),
                 "of meshes without NORMAL: smooth across edges of less than this angle; 0: flat, "
                 "as glTF says");
 }
 
 void add_subject_options(const Command& command, SceneOptions& options) {
-    command
-        .add("scene", "SCENE", text(options.scene),
-             "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a media "
-             "file alone")
-        .required();
+    add_scene_argument(command, options);
     command.add("--media", "FILE.json", file_name(options.media),
                 "what translucent materials are made of; formats/media/README.md lists the keys");
-    add_allow_path_option(command, options.allowed_folders);
+    add_allow_path_option(command, options);
     command.add(
         "--effects", "auto|all|LIST [auto]", text(options.effects),
         std::string(
@@ -135,10 +143,7 @@ void add_subject_options(const Command& command, SceneOptions& options) {
     add_seed_option(command, options.bake.seed,
                     "of everything random: which receivers the error is measured at");
     add_threads_option(command, options.bake.threads);
-    command.add("--metres-per-unit", "X [1]",
-                real_number(options.metres_per_unit, kLeastUnit, kMostUnit),
-                "length of one unit of the scene file");
-    add_smooth_normals_option(command, options.smooth_normals);
+    add_unit_options(command, options);
     add_memory_option(command, options.memory_limit);
 }
 
@@ -197,13 +202,9 @@ formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs
         if (status) announce_size(options.scene, counts);
         return status;
     };
-    auto imported =
-        require(open_scene(options.scene,
-                           {options.metres_per_unit,
-                            {options.allowed_folders.begin(), options.allowed_folders.end()},
-                            check_size,
-                            options.smooth_normals},
-                           options.media, detail));
+    formats::ImportOptions wanted = options.import;
+    wanted.check_size = check_size;
+    auto imported = open_scene(options.scene, wanted, options.media, detail);
     require(bake::check_bakeable(imported.scene));
     require(check(bake::count_memory(bake::all_effects(), imported.scene, knobs)));
     require(check_threads(threads));

@@ -52,7 +52,7 @@ void apply_to_file(const ViewCommand& options, ViewState& state) {
 int run(const ViewCommand& options) {
     const auto steps = read_steps(options.script);
     ViewState state = options.begin;
-    require(check_light(state.light));
+    check_light(state.light);
     state.terms = require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
     rotate_light_to(state, options.rotate_light);
     apply_to_file(options, state);
