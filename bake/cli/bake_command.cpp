@@ -35,6 +35,13 @@ struct BakeCommand {
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
+// "4.1 % (95 %: 3.2 to 5.0)"
+template <class Measured>
+std::string percent_of_rms(const Measured& error) {
+    return fmt::format("{:.1f} % (95 %: {:.1f} to {:.1f})", 100 * error.rms_relative,
+                       100 * error.ci95[0], 100 * error.ci95[1]);
+}
+
 void print_summary(const BakeCommand& options, const bake::BakeResult& result, std::uint64_t bytes,
                    std::size_t warnings) {
     const std::size_t nodes = result.asset.volumes.node.size();
@@ -57,43 +64,29 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
     }
     if (result.accuracy) {
         line += fmt::format("; asked for {:g} %", 100 * result.accuracy->target);
-    }
-    // Of volumes nothing is expected: they are measured.
-    if (result.accuracy && result.error.receivers_checked > 0) {
-        line += fmt::format(", expected {:.2f} %{}", 100 * result.accuracy->predicted,
-                            result.accuracy->model > 0 ? " besides the model" : "");
+        // Of volumes nothing is expected: they are measured.
+        if (result.error.receivers_checked > 0) {
+            line += fmt::format(", expected {:.2f} %{}", 100 * result.accuracy->predicted,
+                                result.accuracy->model > 0 ? " besides the model" : "");
+        }
     }
     if (const auto& model = result.model_error) {
-        line += fmt::format("; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",
-                            100 * model->rms_relative, 100 * model->ci95[0], 100 * model->ci95[1],
+        line += fmt::format("; model error {}, mean {:+.1f} %", percent_of_rms(*model),
                             100 * model->bias);
-        if (const auto& mirrored = model->mirrored) {
-            line += fmt::format("; mirrored light {:.1f} % (95 %: {:.1f} to {:.1f})",
-                                100 * mirrored->rms_relative, 100 * mirrored->ci95[0],
-                                100 * mirrored->ci95[1]);
-        }
-        if (const auto& suns = model->suns) {
-            line += fmt::format("; under suns of 5 degrees {:.1f} % (95 %: {:.1f} to {:.1f})",
-                                100 * suns->rms_relative, 100 * suns->ci95[0], 100 * suns->ci95[1]);
-        }
+        if (model->mirrored) line += "; mirrored light " + percent_of_rms(*model->mirrored);
+        if (model->suns) line += "; under suns of 5 degrees " + percent_of_rms(*model->suns);
     }
     if (const auto& volumes = result.volume_error) {
-        line += fmt::format("; volumes err by {:.1f} % (95 %: {:.1f} to {:.1f}",
-                            100 * volumes->rms_relative, 100 * volumes->ci95[0],
-                            100 * volumes->ci95[1]);
+        std::string text = percent_of_rms(*volumes);
+        text.pop_back();
         for (const bake::VolumeErrorReport::Part& part : volumes->by_light) {
-            line += fmt::format("{} {} {:.1f} %", &part == &volumes->by_light.front() ? ";" : ",",
+            text += fmt::format("{} {} {:.1f} %", &part == &volumes->by_light.front() ? ";" : ",",
                                 part.name, 100 * part.rms_relative);
         }
-        line += ")";
+        line += "; volumes err by " + text + ")";
     }
-    if (const auto& layer = result.layer_error) {
-        line += fmt::format("; cloud layer errs by {:.1f} % (95 %: {:.1f} to {:.1f})",
-                            100 * layer->rms_relative, 100 * layer->ci95[0], 100 * layer->ci95[1]);
-    }
-    line += warnings == 0   ? ""
-            : warnings == 1 ? "; 1 warning"
-                            : "; " + std::to_string(warnings) + " warnings";
+    if (result.layer_error) line += "; cloud layer errs by " + percent_of_rms(*result.layer_error);
+    if (warnings > 0) line += fmt::format("; {} warning{}", warnings, warnings == 1 ? "" : "s");
     print_note(line);
 }
 

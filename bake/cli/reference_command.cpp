@@ -12,7 +12,6 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
-#include "bake/cli/path_integration.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/reference_options.h"
 #include "bake/cli/scene_options.h"
@@ -135,11 +134,7 @@ void make_picture(const ReferenceOptions& options, const bake::PathSpace& space,
                   const bake::EstimateOptions& wanted, const bake::Context& context) {
     const formats::Asset stand_in = make_stand_in(space.scene.surfaces.scene());
     const auto camera = make_camera(options.camera, stand_in.view());
-    if (options.paths.is_chosen()) {
-        return make_path_picture(
-            {options.output, options.exposure.value_or(0.0f), options.samples, camera}, space,
-            options.paths, context);
-    }
+    if (options.by_integration()) return make_path_picture(options, camera, space, context);
     const auto image = require(bake::estimate_image(space, camera, wanted, context));
     report_lost_paths(options, image.estimate);
     require(formats::write_exr(variance_path(options.output), image.variance));
@@ -168,19 +163,13 @@ int run(const ReferenceOptions& options) {
     }
     paths.terms = require(formats::parse_terms(options.terms, formats::TermSet::all, "--terms"));
     check_light(options.light);
-    const MonteCarloOption monte_carlo[] = {
-        {"--receivers", options.receivers > 0},
-        {"--seconds", options.seconds > 0},
-        {"--max-depth", options.max_depth > 0},
-        {"--texture-filter", options.texture_filter != TextureFilter::none},
-        {"--seed", options.seed > 0}};
-    check_method(options.paths, monte_carlo, paths.terms);
+    check_method(options, paths.terms);
     check_reference_paths(options, {});
     const auto imported =
         open_scene(options.scene, options.import, options.media, formats::CloudDetail::fields);
     check_reference_paths(options, imported.scene.inputs);
     check_traceable(imported.scene);
-    if (options.paths.is_chosen()) {
+    if (options.by_integration()) {
         require(bake::check_path_scene(imported.scene));
     }
     const auto light = open_light(options.light, options.rotate_light);

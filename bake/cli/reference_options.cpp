@@ -89,7 +89,7 @@ void check_reference_paths(const ReferenceOptions& options,
                            std::vector<std::filesystem::path> inputs) {
     const bool table = ending_of(options.output) == ".csv";
     std::vector<OutputFile> outputs{{"--output", options.output, {".exr", ".png", ".csv"}}};
-    if (!table && !options.paths.is_chosen()) {
+    if (!table && !options.by_integration()) {
         outputs.push_back({"the variance beside it", variance_path(options.output), {}});
     }
     inputs.insert(inputs.end(), {options.scene, options.media, options.light});
@@ -129,7 +129,7 @@ void add_reference_options(const Command& command, ReferenceOptions& options) {
                 "what translucent materials are made of; volumes of smoke or cloud");
     add_allow_path_option(command, options);
     add_unit_options(command, options);
-    add_path_integration_options(command, options.paths);
+    add_path_integration_options(command, options);
     add_estimate_options(command, options);
     add_camera_options(command, options.camera);
     for (const char* name :

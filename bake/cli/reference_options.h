@@ -5,13 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "bake/cli/path_integration.h"
+#include "bake/base/context.h"
+#include "bake/cli/command.h"
 #include "bake/cli/picture_options.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/scene_options.h"
+#include "bake/reference/path.h"
 #include "bake/scene/orient_bodies.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
+#include "runtime/picture/camera.h"
 
 namespace opaline::cli {
 
@@ -22,6 +25,9 @@ void check_traceable(const formats::Scene& scene);
 /// The scene's bodies as a bake sees them, with warnings about faults of their meshes.
 bake::OrientedBodies close_bodies(const formats::Scene& scene);
 
+/// How it computes.
+enum class ReferenceMethod { monte_carlo, path_integration };
+
 /// What textures are looked up over (bake/reference/path_filter.h).
 enum class TextureFilter { none, footprint, limited };
 
@@ -30,7 +36,9 @@ struct ReferenceOptions : SceneSource {
     std::string light, output, terms;
     TextureFilter texture_filter = TextureFilter::none;
     CameraOptions camera;
-    PathIntegrationOptions paths;
+    ReferenceMethod method = ReferenceMethod::monte_carlo;
+    bool renormalise = true;
+    Option renormalise_option;  ///< tells whether it was given
     double rotate_light = 0, seconds = 0;
     std::uint32_t receivers = 0, samples = 0, max_depth = 0;
     std::uint64_t seed = 0;
@@ -38,6 +46,8 @@ struct ReferenceOptions : SceneSource {
     unsigned threads = 0;
     ProgressStyle progress = ProgressStyle::automatic;
     std::vector<Option> picture_options;  ///< that say nothing of receivers
+
+    bool by_integration() const { return method == ReferenceMethod::path_integration; }
 };
 
 /// `options` must outlive the parsing.
@@ -50,5 +60,18 @@ std::string variance_path(const std::string& output);
 /// `inputs` that the scene has besides. Errors: usage.
 void check_reference_paths(const ReferenceOptions& options,
                            std::vector<std::filesystem::path> inputs);
+
+// In path_integration.cpp:
+
+void add_path_integration_options(const Command& command, ReferenceOptions& options);
+
+/// Refuses options that mean nothing for the method, and terms that it does not compute.
+void check_method(const ReferenceOptions& options, formats::TermSet terms);
+
+/// Computes the picture by path integration, writes it and prints a summary; warns of fidelity
+/// "paper". Precondition: check_path_scene. Errors: usage, for --renormalise on with fidelity
+/// "paper"; and of writing.
+void make_path_picture(const ReferenceOptions& options, const runtime::Camera& camera,
+                       const bake::PathSpace& space, const bake::Context& context);
 
 }  // namespace opaline::cli
