@@ -35,6 +35,13 @@ struct BakeCommand {
     ProgressStyle progress = ProgressStyle::automatic;
 };
 
+// "4.1 % (95 %: 3.2 to 5.0)"
+template <class Measured>
+std::string percent_of_rms(const Measured& error) {
+    return fmt::format("{:.1f} % (95 %: {:.1f} to {:.1f})", 100 * error.rms_relative,
+                       100 * error.ci95[0], 100 * error.ci95[1]);
+}
+
 void print_summary(const BakeCommand& options, const bake::BakeResult& result, std::uint64_t bytes,
                    std::size_t warnings) {
     const std::size_t nodes = result.asset.volumes.node.size();
@@ -57,43 +64,29 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
     }
     if (result.accuracy) {
         line += fmt::format("; asked for {:g} %", 100 * result.accuracy->target);
-    }
-    // Of volumes nothing is expected: they are measured.
-    if (result.accuracy && result.error.receivers_checked > 0) {
-        line += fmt::format(", expected {:.2f} %{}", 100 * result.accuracy->predicted,
-                            result.accuracy->model > 0 ? " besides the model" : "");
+        // Of volumes nothing is expected: they are measured.
+        if (result.error.receivers_checked > 0) {
+            line += fmt::format(", expected {:.2f} %{}", 100 * result.accuracy->predicted,
+                                result.accuracy->model > 0 ? " besides the model" : "");
+        }
     }
     if (const auto& model = result.model_error) {
-        line += fmt::format("; model error {:.1f} % (95 %: {:.1f} to {:.1f}), mean {:+.1f} %",
-                            100 * model->rms_relative, 100 * model->ci95[0], 100 * model->ci95[1],
+        line += fmt::format("; model error {}, mean {:+.1f} %", percent_of_rms(*model),
                             100 * model->bias);
-        if (const auto& mirrored = model->mirrored) {
-            line += fmt::format("; mirrored light {:.1f} % (95 %: {:.1f} to {:.1f})",
-                                100 * mirrored->rms_relative, 100 * mirrored->ci95[0],
-                                100 * mirrored->ci95[1]);
-        }
-        if (const auto& suns = model->suns) {
-            line += fmt::format("; under suns of 5 degrees {:.1f} % (95 %: {:.1f} to {:.1f})",
-                                100 * suns->rms_relative, 100 * suns->ci95[0], 100 * suns->ci95[1]);
-        }
+        if (model->mirrored) line += "; mirrored light " + percent_of_rms(*model->mirrored);
+        if (model->suns) line += "; under suns of 5 degrees " + percent_of_rms(*model->suns);
     }
     if (const auto& volumes = result.volume_error) {
-        line += fmt::format("; volumes err by {:.1f} % (95 %: {:.1f} to {:.1f}",
-                            100 * volumes->rms_relative, 100 * volumes->ci95[0],
-                            100 * volumes->ci95[1]);
+        std::string text = percent_of_rms(*volumes);
+        text.pop_back();
         for (const bake::VolumeErrorReport::Part& part : volumes->by_light) {
-            line += fmt::format("{} {} {:.1f} %", &part == &volumes->by_light.front() ? ";" : ",",
+            text += fmt::format("{} {} {:.1f} %", &part == &volumes->by_light.front() ? ";" : ",",
                                 part.name, 100 * part.rms_relative);
         }
-        line += ")";
+        line += "; volumes err by " + text + ")";
     }
-    if (const auto& layer = result.layer_error) {
-        line += fmt::format("; cloud layer errs by {:.1f} % (95 %: {:.1f} to {:.1f})",
-                            100 * layer->rms_relative, 100 * layer->ci95[0], 100 * layer->ci95[1]);
-    }
-    line += warnings == 0   ? ""
-            : warnings == 1 ? "; 1 warning"
-                            : "; " + std::to_string(warnings) + " warnings";
+    if (result.layer_error) line += "; cloud layer errs by " + percent_of_rms(*result.layer_error);
+    if (warnings > 0) line += fmt::format("; {} warning{}", warnings, warnings == 1 ? "" : "s");
     print_note(line);
 }
 
@@ -227,10 +220,40 @@ int run(const BakeCommand& options) {
     return kExitSuccess;
 }
 
-// What a first bake needs, then the rest.
-void group_bake_options(CLI::App& command) {
-    group_options(command,
-                  {{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
+}  // namespace
+
+void add_bake_command(Program& program) {
+    auto [command, options] =
+        add_command<BakeCommand>(program, "bake", "Bake a scene into an .opal file", run);
+    add_scene_options(command, options.scene);
+    add_error_option(command, options.scene);
+    command.add_flag("--check-model", options.scene.bake.check_model,
+                     "also measure how far the physical model is from a Monte Carlo reference "
+                     "(seconds to a minute); the report gets `model_error`. Volumes are measured "
+                     "in every bake, and more closely with this");
+    command
+        .add("-o,--output", "OUT.opal REQUIRED", file_name(options.output),
+             "the .opal file to write")
+        .required();
+    command.add("--report", file_name(options.report), "write a JSON report: plan, stages, error");
+    command.add("--depfile", file_name(options.depfile),
+                "write the files read as a rule for make and ninja");
+    command.add_flag("--receiver-errors", options.extras.receiver_errors,
+                     "also store how far the rows of each vertex are from those before "
+                     "coefficients were dropped and rounded (4 bytes a vertex): a map of it is "
+                     "shown by `view` and `render --receiver-errors`");
+    command.add("--compression",
+                one_of(options.compression, {{"none", formats::Compression::none},
+                                             {"fast", formats::Compression::fast},
+                                             {"best", formats::Compression::best}}),
+                "of the file: fast or best (slow to write) take a third to a half of the bytes, "
+                "which a program decodes as it loads them; rows of none are used in place. "
+                "Predicted sizes are those of none");
+    command.add_flag("--verbose", options.verbose,
+                     "also print what is simulated and why, and what each stage took");
+    add_progress_option(command, options.progress);
+    // What a first bake needs, then the rest.
+    command.group({{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
                    {"What is simulated",
                     {"--effects", "--separate-terms", "--multiple-model", "--volume-method"}},
                    {"Machine", {"--threads", "--memory-limit"}},
@@ -238,50 +261,7 @@ void group_bake_options(CLI::App& command) {
                     {"--report", "--depfile", "--progress", "--verbose", "--check-model",
                      "--receiver-errors"}}},
                   "Knobs, which --quality and --error set");
-}
-
-}  // namespace
-
-void add_bake_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<BakeCommand>();
-    CLI::App* command = app.add_subcommand("bake", "Bake a scene into an .opal file");
-    add_scene_options(*command, options->scene);
-    add_error_option(*command, options->scene);
-    command->add_flag(
-        "--check-model", options->scene.bake.check_model,
-        "also measure how far the physical model is from a Monte Carlo reference "
-        "(seconds to a minute); the report gets `model_error`. Volumes are measured in "
-        "every bake, and more closely with this");
-    command->add_option("-o,--output", options->output, "the .opal file to write")
-        ->required()
-        ->check(file_name())
-        ->option_text("OUT.opal REQUIRED");
-    command->add_option("--report", options->report, "write a JSON report: plan, stages, error")
-        ->check(file_name());
-    command
-        ->add_option("--depfile", options->depfile,
-                     "write the files read as a rule for make and ninja")
-        ->check(file_name());
-    command->add_flag(
-        "--receiver-errors", options->extras.receiver_errors,
-        "also store how far the rows of each vertex are from those before coefficients were "
-        "dropped and rounded (4 bytes a vertex): a map of it is shown by `view` and `render "
-        "--receiver-errors`");
-    command
-        ->add_option("--compression", options->compression,
-                     "of the file: fast or best (slow to write) take a third to a half of the "
-                     "bytes, which a program decodes as it loads them; rows of none are used in "
-                     "place. Predicted sizes are those of none")
-        ->transform(one_of<formats::Compression>({{"none", formats::Compression::none},
-                                                  {"fast", formats::Compression::fast},
-                                                  {"best", formats::Compression::best}}))
-        ->option_text("none|fast|best [fast]");
-    command->add_flag("--verbose", options->verbose,
-                      "also print what is simulated and why, and what each stage took");
-    add_progress_option(*command, options->progress);
-    group_bake_options(*command);
-    command->footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
+    command.footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
 }
 
 }  // namespace opaline::cli

@@ -47,26 +47,16 @@ int run(const CompareCommand& options) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<CompareCommand>();
-    CLI::App* command =
-        app.add_subcommand("compare",
-                           "Say how far A is from the reference B: two images or two "
-                           "relight tables");
-    command->add_option("a", options->a, "image (.exr, .hdr, .png) or table (.csv)")
-        ->required()
-        ->option_text("A");
-    command->add_option("b", options->b, "the reference, of the same kind")
-        ->required()
-        ->option_text("B");
-    command
-        ->add_option("--max-rel", options->max_relative,
-                     "exit with code 1 if the relative RMSE is larger")
-        ->check(real_number(0, 1e30))
-        ->option_text("E");
-    command->add_flag("--json", options->json, "print JSON");
-    command->footer("Example:\n  opaline compare draft.exr production.exr --max-rel 0.05");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
+void add_compare_command(Program& program) {
+    auto [command, options] = add_command<CompareCommand>(
+        program, "compare",
+        "Say how far A is from the reference B: two images or two relight tables", run);
+    command.add("a", "A", text(options.a), "image (.exr, .hdr, .png) or table (.csv)").required();
+    command.add("b", "B", text(options.b), "the reference, of the same kind").required();
+    command.add("--max-rel", "E", real_number(options.max_relative, 0, 1e30),
+                "exit with code 1 if the relative RMSE is larger");
+    command.add_flag("--json", options.json, "print JSON");
+    command.footer("Example:\n  opaline compare draft.exr production.exr --max-rel 0.05");
 }
 
 }  // namespace opaline::cli

@@ -17,81 +17,57 @@ namespace {
 constexpr double kLeastWavelength = 1e-8, kMostWavelength = 1e-1;      // [m]
 constexpr double kLeastDropletRadius = 1e-10, kMostDropletRadius = 1;  // [m]
 
-void add_substance_options(CLI::App& command, SubstanceOptions& options, bool one_channel) {
+void add_substance_options(const Command& command, SubstanceOptions& options, bool one_channel) {
     options.wavelength_option =
-        command
-            .add_option("--wavelength", options.wavelengths,
-                        std::string("of the light in a vacuum, micrometres or with a unit; ") +
-                            (one_channel ? "several with commas between make one channel of colour"
-                                         : "several for droplets, with commas between"))
-            ->delimiter(',')
-            ->allow_extra_args(false)
-            ->transform(length(kLeastWavelength, kMostWavelength))
-            ->option_text(one_channel ? "W,... [550nm]" : "W,... [650nm,550nm,450nm]");
+        command.add("--wavelength", one_channel ? "W,... [550nm]" : "W,... [650nm,550nm,450nm]",
+                    lengths(options.wavelengths, kLeastWavelength, kMostWavelength),
+                    std::string("of the light in a vacuum, micrometres or with a unit; ") +
+                        (one_channel ? "several with commas between make one channel of colour"
+                                     : "several for droplets, with commas between"));
     if (one_channel) {
         options.weights_option =
-            command
-                .add_option("--weights", options.weights,
-                            "how much of each of several wavelengths the channel has, relative")
-                ->delimiter(',')
-                ->allow_extra_args(false)
-                ->check(real_number(0, 1e9))
-                ->option_text("A,... [equal]");
+            command.add("--weights", "A,... [equal]", real_numbers(options.weights, 0, 1e9),
+                        "how much of each of several wavelengths the channel has, relative");
     }
-    options.index_option =
-        command
-            .add_option("--index", options.index,
-                        "index of refraction relative to the surroundings, real and imaginary part "
-                        "(0 or more, above 0 for absorption)")
-            ->option_text("N[,K]");
+    options.index_option = command.add("--index", "N[,K]", text(options.index),
+                                       "index of refraction relative to the surroundings, real and "
+                                       "imaginary part (0 or more, above 0 for absorption)");
     options.substance_option =
         command
-            .add_option("--substance", options.substance,
-                        "gives the index: water from 300 to 1000 nm, ice from 400 to 800 nm")
-            ->transform(one_of<bake::Substance>(
-                {{"water", bake::Substance::water}, {"ice", bake::Substance::ice}}))
-            ->option_text("water|ice [water]")
-            ->excludes(options.index_option);
+            .add("--substance",
+                 one_of(options.substance,
+                        {{"water", bake::Substance::water}, {"ice", bake::Substance::ice}}),
+                 "gives the index: water from 300 to 1000 nm, ice from 400 to 800 nm")
+            .excludes(options.index_option);
 }
 
 }  // namespace
 
-void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_channel) {
-    options.effective_radius_option =
-        command
-            .add_option("--effective-radius", options.droplets.effective_radius,
-                        "of droplets, mean r^3 over mean r^2, micrometres or with a unit")
-            ->transform(length(kLeastDropletRadius, kMostDropletRadius))
-            ->option_text("R");
-    options.gamma_option =
-        command
-            .add_option("--gamma", options.droplets.gamma,
-                        "shape of the distribution of radii, r^(gamma - 1) e^(-(gamma + 2) r / R): "
-                        "the larger, the narrower")
-            ->check(real_number(bake::kMinGamma, bake::kMaxGamma))
-            ->option_text("G [2]");
+void add_droplet_options(const Command& command, DropletOptions& options, bool one_channel) {
+    options.effective_radius_option = command.add(
+        "--effective-radius", "R",
+        length(options.droplets.effective_radius, kLeastDropletRadius, kMostDropletRadius),
+        "of droplets, mean r^3 over mean r^2, micrometres or with a unit");
+    options.gamma_option = command.add(
+        "--gamma", "G [2]", real_number(options.droplets.gamma, bake::kMinGamma, bake::kMaxGamma),
+        "shape of the distribution of radii, r^(gamma - 1) e^(-(gamma + 2) r / R): the larger, the "
+        "narrower");
     add_substance_options(command, options.substance, one_channel);
     options.size_step_option =
-        command
-            .add_option(
-                "--size-step", options.sampling.size_step,
-                "step of the size parameter between the droplets that are computed; seconds "
-                "and accuracy grow as it falls")
-            ->check(real_number(0.005, 10))
-            ->option_text("S [0.03]");
+        command.add("--size-step", "S [0.03]", real_number(options.sampling.size_step, 0.005, 10),
+                    "step of the size parameter between the droplets that are computed; seconds "
+                    "and accuracy grow as it falls");
     options.threads_option = add_threads_option(command, options.threads);
 }
 
 std::vector<std::string> given_droplet_options(const DropletOptions& options) {
     std::vector<std::string> names;
-    for (const CLI::Option* option :
+    for (const Option& option :
          {options.effective_radius_option, options.gamma_option, options.size_step_option,
           options.threads_option, options.substance.wavelength_option,
           options.substance.weights_option, options.substance.index_option,
           options.substance.substance_option}) {
-        if (option != nullptr && option->count() > 0) {
-            names.push_back(option->get_name());
-        }
+        if (option.is_given()) names.push_back(option.name());
     }
     return names;
 }
@@ -139,9 +115,9 @@ std::vector<bake::DropletOptics> average_droplets(const DropletOptions& options,
     if (bake::relative_width(options.droplets) < bake::kMonodisperse) {
         require(report_warnings({formats::make_warning(
             "", "--gamma",
-            fmt::format("radii spread by {:.2g} of their mean only, so that ripples of equal "
-                        "spheres show",
-                        bake::relative_width(options.droplets)),
+            fmt::format(
+                "radii spread by {:.2g} of their mean only, so that ripples of equal spheres show",
+                bake::relative_width(options.droplets)),
             "give at most 396 for a cloud")}));
     }
     bake::Context context;

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <complex>
 #include <cstddef>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "bake/cli/command.h"
 #include "bake/mie/droplet_optics.h"
 #include "bake/mie/droplets.h"
 #include "bake/mie/refractive_index.h"
@@ -20,8 +20,7 @@ struct SubstanceOptions {
     std::vector<double> weights;      ///< of wavelengths that make one channel; empty: equal
     std::string index;                ///< "N" or "N,K"; empty: that of `substance`
     bake::Substance substance = bake::Substance::water;
-    CLI::Option *wavelength_option = nullptr, *weights_option = nullptr, *index_option = nullptr,
-                *substance_option = nullptr;
+    Option wavelength_option, weights_option, index_option, substance_option;
 };
 
 /// Droplets of modified-gamma sizes: options that `mie` and `phase --type mie` share.
@@ -30,12 +29,11 @@ struct DropletOptions {
     bake::DropletDistribution droplets;
     bake::RadiusSampling sampling;
     unsigned threads = 0;
-    CLI::Option *effective_radius_option = nullptr, *gamma_option = nullptr,
-                *size_step_option = nullptr, *threads_option = nullptr;
+    Option effective_radius_option, gamma_option, size_step_option, threads_option;
 };
 
 /// `one_channel`: several wavelengths stand for one colour, with weights; otherwise for a list.
-void add_droplet_options(CLI::App& command, DropletOptions& options, bool one_channel);
+void add_droplet_options(const Command& command, DropletOptions& options, bool one_channel);
 
 /// The options of a distribution that were given, by name; those of its substance too.
 std::vector<std::string> given_droplet_options(const DropletOptions& options);

@@ -85,20 +85,15 @@ int run(const ExampleCommand& options) {
 
 }  // namespace
 
-void add_example_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<ExampleCommand>();
-    CLI::App* command = app.add_subcommand(
-        "example", "Write a bundled example scene or light; nothing is downloaded");
-    command->add_option("name", options->name, "a scene or a light of the list")
-        ->option_text("NAME");
-    command
-        ->add_option("-o,--output", options->folder,
-                     "folder to write to, created if absent; default: one named after the scene, "
-                     "the current one for a light")
-        ->option_text("DIR");
-    command->add_flag("--list", options->list, "say what there is");
-    command->footer("Example:\n  opaline example statue\n  opaline example studio -o lights");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
+void add_example_command(Program& program) {
+    auto [command, options] = add_command<ExampleCommand>(
+        program, "example", "Write a bundled example scene or light; nothing is downloaded", run);
+    command.add("name", "NAME", text(options.name), "a scene or a light of the list");
+    command.add("-o,--output", "DIR", text(options.folder),
+                "folder to write to, created if absent; default: one named after the scene, the "
+                "current one for a light");
+    command.add_flag("--list", options.list, "say what there is");
+    command.footer("Example:\n  opaline example statue\n  opaline example studio -o lights");
 }
 
 }  // namespace opaline::cli

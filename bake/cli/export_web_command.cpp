@@ -180,7 +180,7 @@ std::string name_of_light(const std::string& spec, const std::vector<runtime::Pa
 std::vector<runtime::PageLight> open_lights(const std::vector<std::string>& specs) {
     std::vector<runtime::PageLight> lights;
     for (const std::string& spec : specs) {
-        auto light = require(open_light(spec, 0));
+        auto light = open_light(spec, 0);
         lights.push_back({name_of_light(spec, lights), std::move(light.environment)});
     }
     return lights;
@@ -190,7 +190,7 @@ int run(const ExportWebCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     require(check_folder(options.folder, runtime::is_page_file));
     for (const std::string& light : options.lights) {
-        require(check_light(light));
+        check_light(light);
     }
     const auto asset = require(open_asset(options.path));
     const formats::AssetView& view = asset.loaded.view;
@@ -218,35 +218,25 @@ int run(const ExportWebCommand& options) {
 
 }  // namespace
 
-void add_export_web_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<ExportWebCommand>();
-    CLI::App* command =
-        app.add_subcommand("export-web", "Write a folder that shows an .opal file in any browser");
-    add_asset_argument(*command, options->path);
+void add_export_web_command(Program& program) {
+    auto [command, options] = add_command<ExportWebCommand>(
+        program, "export-web", "Write a folder that shows an .opal file in any browser", run);
+    add_asset_argument(command, options.path);
     command
-        ->add_option("-o,--output", options->folder,
-                     "the folder; one that exists must be empty or an earlier page, which is "
-                     "replaced")
-        ->required()
-        ->check(file_name())
-        ->option_text("DIR");
-    command
-        ->add_option(
-            "--light", options->lights,
-            "a light that the page offers, may be given often; the first is shown first: " +
-                light_help())
-        ->option_text("ENV [studio, two skies, a sun]")
-        ->take_all()
-        ->allow_extra_args(false);
-    add_threads_option(*command, options->threads, "0: one per core");
-    command->footer(
+        .add("-o,--output", "DIR", file_name(options.folder),
+             "the folder; one that exists must be empty or an earlier page, which is replaced")
+        .required();
+    command.add("--light", "ENV [studio, two skies, a sun]", texts(options.lights),
+                "a light that the page offers, may be given often; the first is shown first: " +
+                    light_help());
+    add_threads_option(command, options.threads, "0: one per core");
+    command.footer(
         "The page needs WebGL 2, but no server and no network: open DIR/index.html from the disk.\n"
         "It shows what `render` does; light turns, cloud layers move with a time.\n"
         "After a '#', its address takes what `render` takes: light, rotate, time, exposure, eye, "
         "target,\n"
         "azimuth, elevation, distance, fov, emitter; the page keeps it up to date.\n\n"
         "Example:\n  opaline export-web statue.opal --light studio --light hall.exr -o page");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

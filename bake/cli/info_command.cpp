@@ -337,13 +337,12 @@ int run(const InfoCommand& options) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<InfoCommand>();
-    CLI::App* command = app.add_subcommand("info", "Say what is inside an .opal file");
-    add_asset_argument(*command, options->path);
-    command->add_flag("--json", options->json, "print JSON");
-    command->footer("Example:\n  opaline info scene.opal");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
+void add_info_command(Program& program) {
+    auto [command, options] =
+        add_command<InfoCommand>(program, "info", "Say what is inside an .opal file", run);
+    add_asset_argument(command, options.path);
+    command.add_flag("--json", options.json, "print JSON");
+    command.footer("Example:\n  opaline info scene.opal");
 }
 
 }  // namespace opaline::cli

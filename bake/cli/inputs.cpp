@@ -24,111 +24,79 @@
 namespace opaline::cli {
 namespace {
 
+using formats::ErrorKind;
+using formats::make_error;
+
 formats::Vec3 centre_of(const formats::AssetView& view) {
     const runtime::BoundingSphere sphere = runtime::bound_asset(view);
     return {static_cast<float>(sphere.x), static_cast<float>(sphere.y),
             static_cast<float>(sphere.z)};
 }
 
-}  // namespace
-
-using formats::ErrorKind;
-using formats::make_error;
-
-namespace {
-
 void join(const std::vector<formats::Diagnostic>& more, formats::ImportedScene& imported) {
     imported.warnings.insert(imported.warnings.end(), more.begin(), more.end());
 }
 
-formats::Status fill_materials(const formats::MediaFile& media, formats::ImportedScene& imported) {
-    const auto warnings = formats::apply_media(media, imported.scene);
-    if (!warnings) return warnings.error();
-    join(*warnings, imported);
-    return formats::ok_status();
+void fill_materials(const formats::MediaFile& media, formats::ImportedScene& imported) {
+    join(require(formats::apply_media(media, imported.scene)), imported);
 }
 
-formats::Status add_clouds(const formats::MediaFile& media, formats::CloudDetail detail,
-                           formats::ImportedScene& imported) {
-    const auto warnings = formats::load_clouds(media, imported.scene, detail);
-    if (!warnings) return warnings.error();
-    join(*warnings, imported);
-    return formats::ok_status();
+void add_clouds(const formats::MediaFile& media, formats::CloudDetail detail,
+                formats::ImportedScene& imported) {
+    join(require(formats::load_clouds(media, imported.scene, detail)), imported);
 }
 
-formats::Status add_media(const formats::MediaFile& media, double metres_per_unit,
-                          formats::CloudDetail detail, formats::ImportedScene& imported) {
-    if (auto status = fill_materials(media, imported); !status) return status;
-    const auto warnings = formats::load_volumes(media, metres_per_unit, imported.scene);
-    if (!warnings) return warnings.error();
-    join(*warnings, imported);
-    return add_clouds(media, detail, imported);
+void add_media(const formats::MediaFile& media, double metres_per_unit, formats::CloudDetail detail,
+               formats::ImportedScene& imported) {
+    fill_materials(media, imported);
+    join(require(formats::load_volumes(media, metres_per_unit, imported.scene)), imported);
+    add_clouds(media, detail, imported);
 }
 
 // A volume alone, with what the media file says of it.
-formats::Result<formats::ImportedScene> open_vdb(const std::filesystem::path& path,
-                                                 const formats::ImportOptions& options,
-                                                 const std::filesystem::path& media,
-                                                 formats::CloudDetail detail) {
-    formats::MediaFile none;
-    none.file = path.string();
-    auto file =
-        media.empty() ? std::move(none) : formats::read_media(media, options.allowed_folders);
-    if (!file) return std::move(file).error();
-    auto imported = formats::import_vdb(path, *file, options.metres_per_unit);
-    if (imported) {
-        if (auto status = fill_materials(*file, *imported); !status) {
-            return std::move(status).error();
-        }
-        if (auto status = add_clouds(*file, detail, *imported); !status) {
-            return std::move(status).error();
-        }
-    }
+formats::ImportedScene open_vdb(const std::filesystem::path& path,
+                                const formats::ImportOptions& options,
+                                const std::filesystem::path& media, formats::CloudDetail detail) {
+    formats::MediaFile file;
+    file.file = path.string();
+    if (!media.empty()) file = require(formats::read_media(media, options.allowed_folders));
+    auto imported = require(formats::import_vdb(path, file, options.metres_per_unit));
+    fill_materials(file, imported);
+    add_clouds(file, detail, imported);
     return imported;
 }
 
 // The volumes and the cloud layer of a media file, without any surface.
-formats::Result<formats::ImportedScene> open_media_scene(const std::filesystem::path& path,
-                                                         const formats::ImportOptions& options,
-                                                         formats::CloudDetail detail) {
-    const auto file = formats::read_media(path, options.allowed_folders);
-    if (!file) return file.error();
-    if (file->volumes.empty() && file->clouds.empty()) {
-        return make_error(ErrorKind::bad_input, path.string(), "", "it has no volumes or clouds",
-                          "a media file alone is a scene if it places a volume or a cloud layer");
+formats::ImportedScene open_media_scene(const std::filesystem::path& path,
+                                        const formats::ImportOptions& options,
+                                        formats::CloudDetail detail) {
+    const auto file = require(formats::read_media(path, options.allowed_folders));
+    if (file.volumes.empty() && file.clouds.empty()) {
+        refuse(make_error(ErrorKind::bad_input, path.string(), "", "it has no volumes or clouds",
+                          "a media file alone is a scene if it places a volume or a cloud layer"));
     }
     formats::ImportedScene imported;
     imported.scene.source = path.string();
     imported.scene.materials.resize(1);
-    if (auto status = add_media(*file, options.metres_per_unit, detail, imported); !status) {
-        return std::move(status).error();
-    }
+    add_media(file, options.metres_per_unit, detail, imported);
     return imported;
 }
 
-formats::Result<formats::ImportedScene> open_gltf(const std::filesystem::path& path,
-                                                  const formats::ImportOptions& options,
-                                                  const std::filesystem::path& media,
-                                                  formats::CloudDetail detail) {
-    auto imported = formats::import_gltf(path, options);
-    if (!imported) return imported;
+formats::ImportedScene open_gltf(const std::filesystem::path& path,
+                                 const formats::ImportOptions& options,
+                                 const std::filesystem::path& media, formats::CloudDetail detail) {
+    auto imported = require(formats::import_gltf(path, options));
     // The file on the command line comes last and overrides the scene's media.
-    if (!imported->media.empty()) {
-        const auto own = formats::parse_media(imported->media, path, "extensions > OPALINE_media",
-                                              options.allowed_folders);
-        if (!own) return own.error();
-        if (auto status = add_media(*own, options.metres_per_unit, detail, *imported); !status) {
-            return std::move(status).error();
-        }
+    if (!imported.media.empty()) {
+        add_media(require(formats::parse_media(imported.media, path, "extensions > OPALINE_media",
+                                               options.allowed_folders)),
+                  options.metres_per_unit, detail, imported);
     }
     if (!media.empty()) {
-        const auto file = formats::read_media(media, options.allowed_folders);
-        if (!file) return file.error();
-        if (auto status = add_media(*file, options.metres_per_unit, detail, *imported); !status) {
-            return std::move(status).error();
-        }
+        add_media(require(formats::read_media(media, options.allowed_folders)),
+                  options.metres_per_unit, detail, imported);
     }
-    join(formats::warn_of_unstated_metals(imported->scene), *imported);
+    join(formats::warn_of_unstated_metals(imported.scene), imported);
     return imported;
 }
 
@@ -148,59 +116,50 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path, forma
     return OpenedAsset{std::move(*file), std::move(*loaded)};
 }
 
-formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
-                                                   const formats::ImportOptions& options,
-                                                   const std::filesystem::path& media,
-                                                   formats::CloudDetail detail) {
+formats::ImportedScene open_scene(const std::filesystem::path& path,
+                                  const formats::ImportOptions& options,
+                                  const std::filesystem::path& media, formats::CloudDetail detail) {
     const std::string ending = ending_of(path);
     if (ending == ".opal") {
-        return make_error(ErrorKind::bad_input, path.string(), "", "is baked already",
+        refuse(make_error(ErrorKind::bad_input, path.string(), "", "is baked already",
                           "did you mean `opaline render " + path.filename().string() +
-                              "`? A bake reads a scene: .gltf, .glb, .vdb or .json");
+                              "`? A bake reads a scene: .gltf, .glb, .vdb or .json"));
     }
     if (ending == ".json" && !media.empty()) {
-        return make_error(ErrorKind::usage, media.string(), "--media",
-                          "the scene is a media file itself", "join both in one file");
+        refuse(make_error(ErrorKind::usage, media.string(), "--media",
+                          "the scene is a media file itself", "join both in one file"));
     }
     auto imported = ending == ".vdb"    ? open_vdb(path, options, media, detail)
                     : ending == ".json" ? open_media_scene(path, options, detail)
                                         : open_gltf(path, options, media, detail);
-    if (!imported) return imported;
-    const auto flattened = bake::flatten_slabs(imported->scene);
-    imported->warnings.insert(imported->warnings.end(), flattened.begin(), flattened.end());
-    if (auto status = report_warnings(imported->warnings); !status) {
-        return std::move(status).error();
-    }
-    for (const std::string& note : imported->notes) {
+    join(bake::flatten_slabs(imported.scene), imported);
+    require(report_warnings(imported.warnings));
+    for (const std::string& note : imported.notes) {
         print_note("opaline: " + printable(path.string()) + ": " + note);
     }
     return imported;
 }
 
-formats::Status check_light(const std::string& spec) {
+void check_light(const std::string& spec) {
     std::error_code ignored;
-    if (!bake::is_builtin(spec) && std::filesystem::exists(spec, ignored)) {
-        return formats::ok_status();
-    }
+    if (!bake::is_builtin(spec) && std::filesystem::exists(spec, ignored)) return;
     const auto made = bake::open_environment(spec);  // by its name, or an error
-    if (made) return formats::ok_status();
+    if (made) return;
     formats::Error error = made.error();
     const std::string nearest = find_nearest(spec, {"white", "black", "studio"});
     if (!nearest.empty() && nearest != spec) {
         std::string& remedy = error.diagnostics.front().remedy;
         remedy = "did you mean '" + nearest + "'? Else " + remedy;
     }
-    return error;
+    refuse(std::move(error));
 }
 
-formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees) {
-    if (auto status = check_light(spec); !status) return status.error();
-    auto opened = bake::open_environment(spec);
-    if (!opened) return std::move(opened).error();
-    if (auto status = report_warnings(opened->warnings); !status) return std::move(status).error();
-    return OpenedLight{
-        std::move(opened->environment),
-        runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};
+OpenedLight open_light(const std::string& spec, double rotate_degrees) {
+    check_light(spec);
+    auto opened = require(bake::open_environment(spec));
+    require(report_warnings(opened.warnings));
+    return {std::move(opened.environment),
+            runtime::rotation_about_y(static_cast<float>(rotate_degrees * std::numbers::pi / 180))};
 }
 
 bool is_scene_ending(std::string_view ending) {
@@ -257,10 +216,9 @@ PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& abov
     return parts;
 }
 
-void add_time_option(CLI::App& command, double& time) {
-    command.add_option("--time", time, "move cloud layers by their wind times T [s]")
-        ->check(real_number(-1e9, 1e9))
-        ->option_text("T [0]");
+void add_time_option(const Command& command, double& time) {
+    command.add("--time", "T [0]", real_number(time, -1e9, 1e9),
+                "move cloud layers by their wind times T [s]");
 }
 
 }  // namespace opaline::cli

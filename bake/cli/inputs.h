@@ -1,7 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bake/cli/command.h"
 #include "formats/gltf/import_gltf.h"
 #include "formats/media/load_clouds.h"
 #include "formats/opal/asset.h"
@@ -35,10 +34,10 @@ formats::Result<OpenedAsset> open_asset(const std::filesystem::path& path,
 /// media file (none if the path is empty), loads their volumes and cloud layers, flattens
 /// sheets of a medium, and reports the warnings (messages.h). A `.vdb` file is a scene of one
 /// volume, and a media file (`.json`) one of its volumes and its cloud layer. `detail`: of layers.
-formats::Result<formats::ImportedScene> open_scene(const std::filesystem::path& path,
-                                                   const formats::ImportOptions& options,
-                                                   const std::filesystem::path& media,
-                                                   formats::CloudDetail detail);
+/// Throws Refusal.
+formats::ImportedScene open_scene(const std::filesystem::path& path,
+                                  const formats::ImportOptions& options,
+                                  const std::filesystem::path& media, formats::CloudDetail detail);
 
 /// A light as `--light` names it, turned by `--rotate-light` degrees about +Y.
 struct OpenedLight {
@@ -46,10 +45,10 @@ struct OpenedLight {
     runtime::Rotation rotation;
 };
 /// Refuses a name that is neither a built-in nor a file, with the nearest one: before a large file
-/// is read. Errors: as open_light.
-formats::Status check_light(const std::string& spec);
+/// is read. Throws Refusal, as open_light does.
+void check_light(const std::string& spec);
 /// Reports warnings about repaired pixels.
-formats::Result<OpenedLight> open_light(const std::string& spec, double rotate_degrees);
+OpenedLight open_light(const std::string& spec, double rotate_degrees);
 
 /// Whether a file with this ending, in lower case, is read as a scene: ".gltf", ".glb", ".vdb",
 /// ".json".
@@ -91,6 +90,6 @@ PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& abov
                           unsigned threads);
 
 /// The option `--time` of commands that light layers. Valid range: 1e9 s on either side of 0.
-void add_time_option(CLI::App& command, double& time);
+void add_time_option(const Command& command, double& time);
 
 }  // namespace opaline::cli

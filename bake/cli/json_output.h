@@ -1,6 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -18,15 +17,14 @@ inline std::string json_text(const nlohmann::ordered_json& json) {
 enum class TextFormat { json, csv };
 
 /// `--format json|csv`, and `--json`, which says that what is printed by default is wanted.
-inline void add_format_options(CLI::App& command, TextFormat& format, const std::string& help) {
-    CLI::Option* option =
-        command.add_option("--format", format, help)
-            ->transform(one_of<TextFormat>({{"json", TextFormat::json}, {"csv", TextFormat::csv}}))
-            ->option_text("json|csv [json]");
+inline void add_format_options(const Command& command, TextFormat& format,
+                               const std::string& help) {
+    const Option option = command.add(
+        "--format", one_of(format, {{"json", TextFormat::json}, {"csv", TextFormat::csv}}), help);
     command
-        .add_flag_callback(
+        .add_flag(
             "--json", [&format] { format = TextFormat::json; }, "the same as --format json")
-        ->excludes(option);
+        .excludes(option);
 }
 
 }  // namespace opaline::cli

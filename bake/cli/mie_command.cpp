@@ -27,15 +27,14 @@ struct MieCommand {
     double size_parameter = 0, radius = 0;  // radius [m]
     std::string forward_angle = "auto";     // [degrees]
     TextFormat format = TextFormat::json;
-    CLI::Option *size_parameter_option = nullptr, *radius_option = nullptr,
-                *density_option = nullptr, *forward_angle_option = nullptr;
+    Option size_parameter_option, radius_option, density_option, forward_angle_option;
 };
 
 void check_options(const MieCommand& options) {
     const DropletOptions& droplets = options.droplets;
-    const bool by_size = options.size_parameter_option->count() > 0;
-    const bool by_radius = options.radius_option->count() > 0;
-    const bool by_droplets = droplets.effective_radius_option->count() > 0;
+    const bool by_size = options.size_parameter_option.is_given();
+    const bool by_radius = options.radius_option.is_given();
+    const bool by_droplets = droplets.effective_radius_option.is_given();
     if (by_size + by_radius + by_droplets != 1) {
         refuse_usage("mie",
                      by_size || by_radius || by_droplets
@@ -43,7 +42,7 @@ void check_options(const MieCommand& options) {
                          : "nothing to compute",
                      "give one of --size-parameter, --radius and --effective-radius");
     }
-    if (by_size && droplets.substance.wavelength_option->count() > 0) {
+    if (by_size && droplets.substance.wavelength_option.is_given()) {
         refuse_usage("--wavelength", "a size parameter holds the wavelength already",
                      "give it with --radius or --effective-radius");
     }
@@ -55,11 +54,11 @@ void check_options(const MieCommand& options) {
         refuse_usage("--wavelength", "one sphere takes one", "give --effective-radius");
     }
     if (by_droplets) return;
-    for (const CLI::Option* option :
+    for (const Option& option :
          {droplets.gamma_option, droplets.size_step_option, droplets.threads_option,
           options.density_option, options.forward_angle_option}) {
-        if (option->count() > 0) {
-            refuse_usage(option->get_name(), "one sphere has no such value",
+        if (option.is_given()) {
+            refuse_usage(option.name(), "one sphere has no such value",
                          "give it with --effective-radius alone");
         }
     }
@@ -72,7 +71,7 @@ Json index_json(std::complex<double> index) {
 Json describe_sphere(const MieCommand& options) {
     Json all;
     double x = options.size_parameter, wavelength = 0;
-    const bool by_radius = options.radius_option->count() > 0;
+    const bool by_radius = options.radius_option.is_given();
     if (by_radius) {
         const auto& given = options.droplets.substance.wavelengths;
         wavelength = given.empty() ? 550 / 1e9 : given.front();
@@ -185,7 +184,7 @@ void print_lines(const std::vector<Json>& rows) {
 
 int run(const MieCommand& options) {
     check_options(options);
-    const bool by_droplets = options.droplets.effective_radius_option->count() > 0;
+    const bool by_droplets = options.droplets.effective_radius_option.is_given();
     const Json all = by_droplets ? describe_distribution(options) : describe_sphere(options);
     if (options.format == TextFormat::json) {
         fmt::print("{}", json_text(all));
@@ -204,37 +203,26 @@ int run(const MieCommand& options) {
 
 }  // namespace
 
-void add_mie_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<MieCommand>();
-    CLI::App* command =
-        app.add_subcommand("mie", "Say how a sphere, or a cloud of droplets, scatters light");
-    options->size_parameter_option =
-        command
-            ->add_option("--size-parameter", options->size_parameter,
-                         "of one sphere, 2 pi radius / wavelength")
-            ->check(real_number(bake::kMinSizeParameter, bake::kMaxSizeParameter))
-            ->option_text("X");
-    options->radius_option =
-        command
-            ->add_option("--radius", options->radius, "of one sphere, micrometres or with a unit")
-            ->transform(length(1e-15, 1))
-            ->option_text("R");
-    add_droplet_options(*command, options->droplets, false);
-    options->density_option = command
-                                  ->add_option("--density", options->droplets.droplets.density,
-                                               "droplets per cubic metre")
-                                  ->check(number_above(0, 1e30))
-                                  ->option_text("N [3e8]");
-    options->forward_angle_option =
-        command
-            ->add_option(
-                "--forward-angle", options->forward_angle,
-                "half angle of the forward peak in degrees, 0 to 90, counted as light that "
-                "goes straight on; auto: where the logarithm of the phase function of the "
-                "middle wavelength falls by less than 0.44 a degree")
-            ->option_text("auto|A [auto]");
-    add_format_options(*command, options->format, "csv: a line of names, and lines of values");
-    command->footer(
+void add_mie_command(Program& program) {
+    auto [command, options] = add_command<MieCommand>(
+        program, "mie", "Say how a sphere, or a cloud of droplets, scatters light", run);
+    options.size_parameter_option = command.add(
+        "--size-parameter", "X",
+        real_number(options.size_parameter, bake::kMinSizeParameter, bake::kMaxSizeParameter),
+        "of one sphere, 2 pi radius / wavelength");
+    options.radius_option = command.add("--radius", "R", length(options.radius, 1e-15, 1),
+                                        "of one sphere, micrometres or with a unit");
+    add_droplet_options(command, options.droplets, false);
+    options.density_option = command.add("--density", "N [3e8]",
+                                         number_above(options.droplets.droplets.density, 0, 1e30),
+                                         "droplets per cubic metre");
+    options.forward_angle_option =
+        command.add("--forward-angle", "auto|A [auto]", text(options.forward_angle),
+                    "half angle of the forward peak in degrees, 0 to 90, counted as light that "
+                    "goes straight on; auto: where the logarithm of the phase function of the "
+                    "middle wavelength falls by less than 0.44 a degree");
+    add_format_options(command, options.format, "csv: a line of names, and lines of values");
+    command.footer(
         "Prints efficiencies (cross-sections over the geometric one) of extinction, scattering,\n"
         "absorption and backscattering (radar convention), and the mean cosine g of the angle.\n"
         "Of droplets, means over the distribution; extinction per metre; the share of scattered\n"
@@ -245,7 +233,6 @@ void add_mie_command(CLI::App& app, Job& job) {
         "Example:\n  opaline mie --size-parameter 10 --index 1.5\n"
         "  opaline mie --radius 0.525 --wavelength 632.8nm --index 1.55 --format csv\n"
         "  opaline mie --effective-radius 7um --gamma 2 --density 3e8");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

@@ -1,6 +1,6 @@
 #include "bake/cli/option_values.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -57,8 +57,45 @@ std::optional<double> parse_length(std::string_view text) {
     return value ? std::optional(*value / per_metre) : std::nullopt;
 }
 
-CLI::Validator make_check(std::function<std::string(std::string&)> check) {
-    return CLI::Validator(std::move(check), "");  // no text of its own in --help
+// Takes texts that `parse` finds a value in; `describe` says what is wrong with others.
+template <class Parse, class Put, class Describe>
+OptionValue make_value(Parse parse, Put put, Describe describe) {
+    return {[=](const std::string& text) {
+        const auto value = parse(text);
+        if (!value) return fmt::format("'{}' is not {}", shorten(text), describe());
+        put(*value);
+        return std::string();
+    }};
+}
+
+OptionValue make_text(std::string& to, const char* fault_of_none) {
+    return {[&to, fault_of_none](const std::string& text) {
+        to = text;
+        return std::string(text.empty() ? fault_of_none : "");
+    }};
+}
+
+// Of each value of several.
+OptionValue append_to(std::vector<double>& to, OptionValue (*one)(double, double, detail::Put),
+                      double least, double most) {
+    OptionValue value = one(least, most, [&to](double number) { to.push_back(number); });
+    value.count = OptionValue::Count::listed;
+    return value;
+}
+
+OptionValue make_length(double least, double most, detail::Put put) {
+    return make_value(
+        [=](const std::string& text) {
+            const auto metres = parse_length(text);
+            return metres && *metres >= least && *metres <= most ? metres : std::nullopt;
+        },
+        std::move(put),
+        [=] {
+            return fmt::format(
+                "a length from {:g} to {:g} micrometres (a number of micrometres, or one with a "
+                "unit: nm, um, mm, m)",
+                least * kMicrometresPerMetre, most * kMicrometresPerMetre);
+        });
 }
 
 constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
@@ -85,121 +122,106 @@ std::uint64_t address_space_left(unsigned threads) {
 
 }  // namespace
 
-CLI::Validator real_number(double least, double most) {
-    return make_check([=](std::string& text) {
-        const auto value = parse_whole<double>(text);
-        if (value && std::isfinite(*value) && *value >= least && *value <= most) {
-            return std::string();
-        }
-        return fmt::format("'{}' is not a number from {:g} to {:g}", shorten(text), least, most);
-    });
-}
-
-CLI::Validator number_above(double bound, double most) {
-    return make_check([=](std::string& text) {
-        const auto value = parse_whole<double>(text);
-        if (value && std::isfinite(*value) && *value > bound && *value <= most) {
-            return std::string();
-        }
-        return fmt::format("'{}' is not a number above {:g} and up to {:g}", shorten(text), bound,
-                           most);
-    });
-}
-
-CLI::Validator length(double least, double most) {
-    return make_check([=](std::string& text) {
-        const auto metres = parse_length(text);
-        if (metres && *metres >= least && *metres <= most) {
-            text = fmt::format("{}", *metres);
-            return std::string();
-        }
-        return fmt::format(
-            "'{}' is not a length from {:g} to {:g} micrometres (a number of micrometres, or one "
-            "with a unit: nm, um, mm, m)",
-            shorten(text), least * kMicrometresPerMetre, most * kMicrometresPerMetre);
-    });
-}
-
 std::optional<double> parse_number(std::string_view text) {
     const auto value = parse_whole<double>(text);
     return value && std::isfinite(*value) ? value : std::nullopt;
 }
 
-CLI::Validator whole_number(std::uint64_t least, std::uint64_t most) {
-    return make_check([=](std::string& text) {
-        const auto value = parse_whole<std::uint64_t>(text);
-        if (value && *value >= least && *value <= most) {
-            text = std::to_string(*value);  // leading zeros would make it octal
-            return std::string();
-        }
-        return fmt::format("'{}' is not a whole number from {} to {}", shorten(text), least, most);
-    });
-}
-
-CLI::Validator file_name() {
-    return make_check([](std::string& text) {
-        return text.empty() ? std::string("the name is empty; give the path of a file") : "";
-    });
-}
-
-CLI::Option* add_threads_option(CLI::App& command, unsigned& threads, const std::string& help) {
-    return command.add_option("--threads", threads, help)
-        ->transform(whole_number(0, 1024))
-        ->option_text("T [0]");
-}
-
-CLI::Option* add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& help) {
-    return command.add_option("--seed", seed, help)
-        ->transform(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-        ->option_text("S [0]");
-}
-
-void add_asset_argument(CLI::App& command, std::string& path) {
-    command.add_option("file", path, "the .opal file")->required()->option_text("FILE.opal");
-}
-
-CLI::Validator term_list() {
-    return make_check([](std::string& text) {
-        return text.empty() ? std::string("it names nothing; give all, or leave it out") : "";
-    });
-}
-
-void group_options(CLI::App& command, const std::vector<OptionGroup>& groups,
-                   const std::string& others) {
-    for (CLI::Option* option : command.get_options()) {
-        if (option->nonpositional() && option != command.get_help_ptr()) option->group(others);
-    }
-    for (const OptionGroup& group : groups) {
-        for (const std::string& name : group.names) {
-            command.get_option(name)->group(group.heading.empty() ? "Options" : group.heading);
-        }
-    }
+std::optional<std::uint64_t> parse_whole_number(std::string_view text, std::uint64_t least,
+                                                std::uint64_t most) {
+    const auto value = parse_whole<std::uint64_t>(text);
+    return value && *value >= least && *value <= most ? value : std::nullopt;
 }
 
 namespace detail {
 
-CLI::Validator one_of(std::vector<std::pair<std::string, std::string>> names) {
-    return make_check([names = std::move(names)](std::string& text) {
-        std::string list;
-        for (const auto& [name, value] : names) {
-            if (text == name) {
-                text = value;
-                return std::string();
-            }
-            list += (list.empty() ? "" : ", ") + name;
-        }
-        return fmt::format("'{}' is not one of {}", shorten(text), list);
-    });
+OptionValue real_number(double least, double most, Put put) {
+    return make_value(
+        [=](const std::string& text) {
+            const auto value = parse_number(text);
+            return value && *value >= least && *value <= most ? value : std::nullopt;
+        },
+        std::move(put), [=] { return fmt::format("a number from {:g} to {:g}", least, most); });
+}
+
+OptionValue number_above(double bound, double most, Put put) {
+    return make_value(
+        [=](const std::string& text) {
+            const auto value = parse_number(text);
+            return value && *value > bound && *value <= most ? value : std::nullopt;
+        },
+        std::move(put),
+        [=] { return fmt::format("a number above {:g} and up to {:g}", bound, most); });
+}
+
+OptionValue whole_number(std::uint64_t least, std::uint64_t most,
+                         std::function<void(std::uint64_t)> put) {
+    return make_value(
+        [=](const std::string& text) { return parse_whole_number(text, least, most); },
+        std::move(put), [=] { return fmt::format("a whole number from {} to {}", least, most); });
+}
+
+OptionValue one_of(std::vector<std::string> names, std::function<void(std::size_t)> put) {
+    return make_value(
+        [names](const std::string& text) {
+            const auto found = std::ranges::find(names, text);
+            return found == names.end() ? std::nullopt : std::optional(found - names.begin());
+        },
+        [put = std::move(put)](std::ptrdiff_t i) { put(static_cast<std::size_t>(i)); },
+        [names] { return fmt::format("one of {}", fmt::join(names, ", ")); });
 }
 
 }  // namespace detail
 
-void add_memory_option(CLI::App& command, std::uint64_t& limit) {
-    command
-        .add_option("--memory-limit", limit,
-                    "refuse what is predicted to need more; default: what the machine has")
-        ->transform(whole_number(1, std::numeric_limits<std::int64_t>::max()))
-        ->option_text("BYTES");
+OptionValue length(double& to, double least, double most) {
+    return make_length(least, most, detail::put_into(to));
+}
+
+OptionValue lengths(std::vector<double>& to, double least, double most) {
+    return append_to(to, make_length, least, most);
+}
+
+OptionValue real_numbers(std::vector<double>& to, double least, double most) {
+    return append_to(to, detail::real_number, least, most);
+}
+
+OptionValue text(std::string& to) {
+    return make_text(to, "");
+}
+
+OptionValue texts(std::vector<std::string>& to, OptionValue::Count count) {
+    return {[&to](const std::string& value) {
+                to.push_back(value);
+                return std::string();
+            },
+            count};
+}
+
+OptionValue file_name(std::string& to) {
+    return make_text(to, "the name is empty; give the path of a file");
+}
+
+OptionValue term_list(std::string& to) {
+    return make_text(to, "it names nothing; give all, or leave it out");
+}
+
+Option add_threads_option(const Command& command, unsigned& threads, const std::string& help) {
+    return command.add("--threads", "T [0]", whole_number(threads, 0, 1024), help);
+}
+
+Option add_seed_option(const Command& command, std::uint64_t& seed, const std::string& help) {
+    return command.add("--seed", "S [0]",
+                       whole_number(seed, 0, std::numeric_limits<std::uint64_t>::max()), help);
+}
+
+void add_asset_argument(const Command& command, std::string& path) {
+    command.add("file", "FILE.opal", text(path), "the .opal file").required();
+}
+
+void add_memory_option(const Command& command, std::uint64_t& limit) {
+    command.add("--memory-limit", "BYTES",
+                whole_number(limit, 1, std::numeric_limits<std::int64_t>::max()),
+                "refuse what is predicted to need more; default: what the machine has");
 }
 
 std::uint64_t available_memory(unsigned threads) {

@@ -29,8 +29,7 @@ struct PhaseCommand {
     std::string table_output;
     unsigned samples = 181;
     TextFormat format = TextFormat::json;
-    CLI::Option *g_option = nullptr, *rms_angle_option = nullptr, *table_option = nullptr,
-                *samples_option = nullptr;
+    Option g_option, rms_angle_option, table_option, samples_option;
 };
 
 constexpr unsigned kMostTerms = 25, kCubemapSize = 16;
@@ -39,30 +38,26 @@ constexpr std::size_t kSingularValues = 100;  ///< shown; the errors take in all
 void check_options(const PhaseCommand& options) {
     using Type = PhaseType;
     struct Rule {
-        const CLI::Option* option;
-        const char* name;
+        const Option& option;
         PhaseType type;
-        const char* remedy;
+        const char* type_name;
     };
-    const Rule rules[] = {
-        {options.g_option, "--g", Type::henyey_greenstein, "give it with --type hg alone"},
-        {options.rms_angle_option, "--rms-angle", Type::gaussian,
-         "give it with --type gaussian alone"},
-        {options.table_option, "--table", Type::tabulated, "give it with --type table alone"},
-        {options.phase.droplets.effective_radius_option, "--effective-radius", Type::mie,
-         "give it with --type mie alone"}};
-    for (const Rule& rule : rules) {
-        const bool given = rule.option->count() > 0, needed = options.phase.type == rule.type;
-        if (given != needed) {
-            refuse_usage(rule.name, given ? "this type has no such value" : "it is missing",
-                         rule.remedy);
+    const Rule rules[] = {{options.g_option, Type::henyey_greenstein, "hg"},
+                          {options.rms_angle_option, Type::gaussian, "gaussian"},
+                          {options.table_option, Type::tabulated, "table"},
+                          {options.phase.droplets.effective_radius_option, Type::mie, "mie"}};
+    for (const auto& [option, type, type_name] : rules) {
+        const bool given = option.is_given();
+        if (given != (options.phase.type == type)) {
+            refuse_usage(option.name(), given ? "this type has no such value" : "it is missing",
+                         fmt::format("give it with --type {} alone", type_name));
         }
     }
     if (options.phase.type != PhaseType::mie) {
         for (const std::string& name : given_droplet_options(options.phase.droplets)) {
             refuse_usage(name, "this type has no such value", "give it with --type mie alone");
         }
-    } else if (options.samples_option->count() > 0) {
+    } else if (options.samples_option.is_given()) {
         refuse_usage("--samples", "this type has rows of its own",
                      "leave it out: they crowd where the function bends");
     }
@@ -150,52 +145,37 @@ int run(const PhaseCommand& options) {
 
 }  // namespace
 
-void add_phase_command(CLI::App& app, Job& job) {
+void add_phase_command(Program& program) {
     using Type = PhaseType;
-    auto options = std::make_shared<PhaseCommand>();
-    CLI::App* command = app.add_subcommand(
-        "phase", "Tabulate a phase function and say how many terms its factors need");
-    command->add_option("--type", options->phase.type, "as in media files: formats/media/README.md")
-        ->transform(one_of<Type>({{"hg", Type::henyey_greenstein},
-                                  {"isotropic", Type::isotropic},
-                                  {"rayleigh", Type::rayleigh},
-                                  {"gaussian", Type::gaussian},
-                                  {"table", Type::tabulated},
-                                  {"mie", Type::mie}}))
-        ->option_text("hg|isotropic|rayleigh|gaussian|table|mie [hg]");
-    options->g_option =
-        command
-            ->add_option("--g", options->phase.g,
-                         "mean cosine of hg, -0.99 to 0.99; above 0: forward")
-            ->check(real_number(-formats::media::kMaxMeanCosine, formats::media::kMaxMeanCosine))
-            ->option_text("G");
-    options->rms_angle_option =
-        command
-            ->add_option("--rms-angle", options->phase.rms_angle,
-                         "root mean square angle of the gaussian, in radians, 0.001 to 1")
-            ->check(real_number(formats::media::kMinRmsAngle, 1))
-            ->option_text("A");
-    options->table_option =
-        command
-            ->add_option("--table", options->phase.table,
-                         "measured function: lines of a cosine and a value, cosines ascending from "
-                         "-1 to 1, values relative")
-            ->option_text("FILE");
-    add_droplet_options(*command, options->phase.droplets, true);
-    options->samples_option =
-        command
-            ->add_option("--samples", options->samples,
-                         "angles at which the function is printed, equally spaced")
-            ->transform(whole_number(2, 100001))
-            ->option_text("N [181]");
-    command
-        ->add_option("--table-output", options->table_output,
-                     "also write the function as a table that a media file can name, with rows "
-                     "where it bends")
-        ->check(file_name())
-        ->option_text("FILE");
-    add_format_options(*command, options->format, "csv: lines of quantity,at,value");
-    command->footer(
+    auto [command, options] = add_command<PhaseCommand>(
+        program, "phase", "Tabulate a phase function and say how many terms its factors need", run);
+    command.add("--type",
+                one_of(options.phase.type, {{"hg", Type::henyey_greenstein},
+                                            {"isotropic", Type::isotropic},
+                                            {"rayleigh", Type::rayleigh},
+                                            {"gaussian", Type::gaussian},
+                                            {"table", Type::tabulated},
+                                            {"mie", Type::mie}}),
+                "as in media files: formats/media/README.md");
+    options.g_option = command.add("--g", "G",
+                                   real_number(options.phase.g, -formats::media::kMaxMeanCosine,
+                                               formats::media::kMaxMeanCosine),
+                                   "mean cosine of hg, -0.99 to 0.99; above 0: forward");
+    options.rms_angle_option = command.add(
+        "--rms-angle", "A", real_number(options.phase.rms_angle, formats::media::kMinRmsAngle, 1),
+        "root mean square angle of the gaussian, in radians, 0.001 to 1");
+    options.table_option = command.add("--table", "FILE", text(options.phase.table),
+                                       "measured function: lines of a cosine and a value, cosines "
+                                       "ascending from -1 to 1, values relative");
+    add_droplet_options(command, options.phase.droplets, true);
+    options.samples_option =
+        command.add("--samples", "N [181]", whole_number(options.samples, 2, 100001),
+                    "angles at which the function is printed, equally spaced");
+    command.add(
+        "--table-output", "FILE", file_name(options.table_output),
+        "also write the function as a table that a media file can name, with rows where it bends");
+    add_format_options(command, options.format, "csv: lines of quantity,at,value");
+    command.footer(
         "Prints p(cosine) per steradian, the cosine between propagation directions; lambda_l, its\n"
         "Legendre coefficients, p = sum (2 l + 1) / (4 pi) lambda_l P_l; the RMS error, over all\n"
         "pairs of directions, of the first 1 to 25 spherical harmonics (relative, and per\n"
@@ -209,7 +189,6 @@ void add_phase_command(CLI::App& app, Job& job) {
         "  opaline phase --type mie --effective-radius 7um --table-output droplets.txt\n"
         "  opaline phase --type mie --effective-radius 7um --wavelength 600nm,650nm,700nm "
         "--weights 1,2,1");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

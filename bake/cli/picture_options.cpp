@@ -52,16 +52,17 @@ constexpr std::uint32_t kMostPixels = runtime::kMaxPictureSize;  // along one si
 
 void parse_size(const std::string& text, std::uint32_t& width, std::uint32_t& height) {
     const std::size_t cross = std::min(text.find('x'), text.size());
-    std::string w = text.substr(0, cross), h = text.substr(std::min(cross + 1, text.size()));
-    const CLI::Validator pixels = whole_number(1, kMostPixels);
-    if (!pixels(w).empty() || !pixels(h).empty()) {
+    const auto columns = parse_whole_number(text.substr(0, cross), 1, kMostPixels);
+    const auto rows =
+        parse_whole_number(text.substr(std::min(cross + 1, text.size())), 1, kMostPixels);
+    if (!columns || !rows) {
         refuse_usage("--size",
                      "'" + shorten(text) + "' is not WIDTHxHEIGHT in pixels, each from 1 to " +
                          std::to_string(kMostPixels),
                      "give for example 960x720");
     }
-    width = static_cast<std::uint32_t>(std::stoul(w));
-    height = static_cast<std::uint32_t>(std::stoul(h));
+    width = static_cast<std::uint32_t>(*columns);
+    height = static_cast<std::uint32_t>(*rows);
 }
 
 // Angles and distance that are not given stay those of the framing camera: `from` its target to its
@@ -83,35 +84,28 @@ bool frames_object(const CameraOptions& options) {
            !options.azimuth && !options.elevation && !options.distance;
 }
 
-void add_camera_options(CLI::App& command, CameraOptions& options) {
-    command.add_option("--size", options.size, "of the picture, in pixels")
-        ->option_text("WxH [" + options.size + "]");
-    CLI::Option* const eye =
-        command.add_option("--eye", options.eye, "camera position [m]; default: frames everything")
-            ->option_text("X,Y,Z");
+void add_camera_options(const Command& command, CameraOptions& options) {
+    command.add("--size", "WxH [" + options.size + "]", text(options.size),
+                "of the picture, in pixels");
+    const Option eye = command.add("--eye", "X,Y,Z", text(options.eye),
+                                   "camera position [m]; default: frames everything");
     command
-        .add_option("--azimuth", options.azimuth,
-                    "from the target to the camera, from +Z toward +X [degrees]")
-        ->check(real_number(-1e6, 1e6))
-        ->excludes(eye)
-        ->option_text("DEG");
+        .add("--azimuth", "DEG", real_number(options.azimuth, -1e6, 1e6),
+             "from the target to the camera, from +Z toward +X [degrees]")
+        .excludes(eye);
     command
-        .add_option("--elevation", options.elevation,
-                    "from the target to the camera, above the horizon [degrees]")
-        ->check(real_number(-90, 90))
-        ->excludes(eye)
-        ->option_text("DEG");
-    command.add_option("--distance", options.distance, "from the target to the camera [m]")
-        ->check(number_above(0, 1e12))
-        ->excludes(eye)
-        ->option_text("M");
-    command.add_option("--target", options.target, "point looked at [m]; default: the middle")
-        ->option_text("X,Y,Z");
-    command.add_option("--up", options.up, "direction that is up in the picture")
-        ->option_text("X,Y,Z [0,1,0]");
-    command.add_option("--fov", options.fov, "vertical angle of view [degrees]")
-        ->check(number_above(0, 179.9))
-        ->option_text("DEG [32]");
+        .add("--elevation", "DEG", real_number(options.elevation, -90, 90),
+             "from the target to the camera, above the horizon [degrees]")
+        .excludes(eye);
+    command
+        .add("--distance", "M", number_above(options.distance, 0, 1e12),
+             "from the target to the camera [m]")
+        .excludes(eye);
+    command.add("--target", "X,Y,Z", text(options.target),
+                "point looked at [m]; default: the middle");
+    command.add("--up", "X,Y,Z [0,1,0]", text(options.up), "direction that is up in the picture");
+    command.add("--fov", "DEG [32]", number_above(options.fov, 0, 179.9),
+                "vertical angle of view [degrees]");
 }
 
 runtime::Camera make_camera(const CameraOptions& options, const formats::AssetView& view) {
@@ -146,60 +140,42 @@ runtime::Camera make_camera(const CameraOptions& options, const formats::AssetVi
     return camera;
 }
 
-void add_rotate_light_option(CLI::App& command, double& degrees) {
-    command
-        .add_option("--rotate-light", degrees,
-                    "turn the light about +Y, from +Z toward +X [degrees]")
-        ->check(real_number(-1e6, 1e6))
-        ->option_text("DEG [0]");
+void add_rotate_light_option(const Command& command, double& degrees) {
+    command.add("--rotate-light", "DEG [0]", real_number(degrees, -1e6, 1e6),
+                "turn the light about +Y, from +Z toward +X [degrees]");
 }
 
-void add_exposure_option(CLI::App& command, std::optional<float>& exposure, const char* otherwise) {
-    command
-        .add_option("--exposure", exposure,
-                    std::string("brighter by a factor of 2^EV; default: ") + otherwise)
-        ->check(real_number(-64, 64))
-        ->option_text("EV");
+void add_exposure_option(const Command& command, std::optional<float>& exposure,
+                         const char* otherwise) {
+    command.add("--exposure", "EV", real_number(exposure, -64, 64),
+                std::string("brighter by a factor of 2^EV; default: ") + otherwise);
 }
 
-void add_look_options(CLI::App& command, const LookOptions& options) {
+void add_look_options(const Command& command, const LookOptions& options) {
     add_rotate_light_option(command, options.rotate_light);
-    command
-        .add_option("--terms", options.terms,
-                    "components to show: all, or some of " +
-                        formats::term_names(formats::TermSet::baked) +
-                        "; the background is black, without a cloud layer, unless all are. " +
-                        formats::term_names(formats::TermSet::separable, " and ") +
-                        " apart need a bake with --separate-terms")
-        ->check(term_list())
-        ->option_text("all|LIST [all]");
+    command.add("--terms", "all|LIST [all]", term_list(options.terms),
+                "components to show: all, or some of " +
+                    formats::term_names(formats::TermSet::baked) +
+                    "; the background is black, without a cloud layer, unless all are. " +
+                    formats::term_names(formats::TermSet::separable, " and ") +
+                    " apart need a bake with --separate-terms");
     add_exposure_option(command, options.exposure,
                         "0, but lower where what is shown is too bright for a screen, and higher "
                         "where it is nearly black; 0 of .exr");
-    command
-        .add_option("--tone-map", options.tone_map,
-                    "of screens and .png. neutral: as Khronos PBR Neutral up to its shoulder, "
-                    "above it each "
-                    "band by itself; none: cut off at 1")
-        ->transform(one_of<runtime::ToneMap>(
-            {{"neutral", runtime::ToneMap::neutral}, {"none", runtime::ToneMap::none}}))
-        ->option_text("neutral|none [neutral]");
-    command
-        .add_option("--coefficients", options.coefficients,
-                    "use at most M coefficients of a row of a mesh, the largest: what a bake with "
-                    "fewer looks like")
-        ->transform(whole_number(6, 1U << 20U))
-        ->option_text("M [all]");
+    command.add("--tone-map",
+                one_of(options.tone_map,
+                       {{"neutral", runtime::ToneMap::neutral}, {"none", runtime::ToneMap::none}}),
+                "of screens and .png. neutral: as Khronos PBR Neutral up to its shoulder, above it "
+                "each band by itself; none: cut off at 1");
+    command.add("--coefficients", "M [all]", whole_number(options.coefficients, 6, 1U << 20U),
+                "use at most M coefficients of a row of a mesh, the largest: what a bake with "
+                "fewer looks like");
 }
 
-void add_emitter_option(CLI::App& command, std::vector<std::string>& texts) {
-    command
-        .add_option(kOption, texts,
-                    "multiply the light of an emitter of the file, which `opaline info` lists, by "
-                    "R, G and B; 0,0,0 switches it off. May be given for several emitters")
-        ->option_text("NAME=R,G,B")
-        ->take_all()
-        ->allow_extra_args(false);
+void add_emitter_option(const Command& command, std::vector<std::string>& given) {
+    command.add(kOption, "NAME=R,G,B", texts(given),
+                "multiply the light of an emitter of the file, which `opaline info` lists, by R, G "
+                "and B; 0,0,0 switches it off. May be given for several emitters");
 }
 
 formats::Result<std::vector<formats::Rgb>> parse_emitters(const formats::EmittersView& emitters,

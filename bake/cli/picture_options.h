@@ -1,12 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "bake/cli/command.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/emitters.h"
 #include "formats/opal/result.h"
@@ -18,7 +17,7 @@
 namespace opaline::cli {
 
 /// `--emitter NAME=R,G,B`, or NAME=V for a grey factor; may be given often.
-void add_emitter_option(CLI::App& command, std::vector<std::string>& texts);
+void add_emitter_option(const Command& command, std::vector<std::string>& texts);
 
 /// A factor for each emitter of a file: 1 where none is given, the last one where several are.
 /// Errors: usage, for a name that the file does not have, and for factors that are not finite or
@@ -36,10 +35,11 @@ struct LookOptions {
 };
 
 /// Those that other commands have as well; `otherwise`: what is without the option.
-void add_rotate_light_option(CLI::App& command, double& degrees);
-void add_exposure_option(CLI::App& command, std::optional<float>& exposure, const char* otherwise);
+void add_rotate_light_option(const Command& command, double& degrees);
+void add_exposure_option(const Command& command, std::optional<float>& exposure,
+                         const char* otherwise);
 
-void add_look_options(CLI::App& command, const LookOptions& options);
+void add_look_options(const Command& command, const LookOptions& options);
 
 /// Options common to `render` and `reference`.
 struct CameraOptions {
@@ -48,7 +48,7 @@ struct CameraOptions {
     float fov = 32;
 };
 
-void add_camera_options(CLI::App& command, CameraOptions& options);
+void add_camera_options(const Command& command, CameraOptions& options);
 
 /// Whether no option places the camera, so that it frames the object.
 bool frames_object(const CameraOptions& options);

@@ -87,15 +87,13 @@ int run(const PlanCommand& options) {
 
 }  // namespace
 
-void add_plan_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<PlanCommand>();
-    CLI::App* command =
-        app.add_subcommand("plan", "Say what a bake of the scene would simulate, and why");
-    add_scene_options(*command, options->scene);
-    add_error_option(*command, options->scene);
-    command->add_flag("--json", options->json, "print JSON");
-    command->footer("Example:\n  opaline plan scene.glb --quality production");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
+void add_plan_command(Program& program) {
+    auto [command, options] = add_command<PlanCommand>(
+        program, "plan", "Say what a bake of the scene would simulate, and why", run);
+    add_scene_options(command, options.scene);
+    add_error_option(command, options.scene);
+    command.add_flag("--json", options.json, "print JSON");
+    command.footer("Example:\n  opaline plan scene.glb --quality production");
 }
 
 }  // namespace opaline::cli

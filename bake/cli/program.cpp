@@ -2,15 +2,19 @@
 
 #include <fmt/core.h>
 
+#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <memory>
 #include <new>
 #include <system_error>
 
 #include "bake/cli/command.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
 #include "bake/cli/usage_errors.h"
 #include "bake/transport/embree_scene.h"
 #include "formats/opal/asset.h"
@@ -37,6 +41,29 @@ std::string describe_version() {
         OPALINE_BUILD_TYPE, kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
 }
 
+// `name`: of a command; empty: the program.
+int print_help(const CLI::App& app, const std::string& name) {
+    const auto commands = app.get_subcommands({});
+    const auto found = std::ranges::find(commands, name, &CLI::App::get_name);
+    if (!name.empty() && found == commands.end()) {
+        refuse_usage("", describe_unknown_command(app, name), "see `opaline --help`");
+    }
+    // App::help() would explain the command that was given: this one.
+    const CLI::App& subject = name.empty() ? app : **found;
+    const std::string shown = app.get_name() + (name.empty() ? "" : " " + name);
+    fmt::print("{}", app.get_formatter()->make_help(&subject, shown, CLI::AppFormatMode::Normal));
+    return kExitSuccess;
+}
+
+void add_help_command(Program& program) {
+    auto name = std::make_shared<std::string>();
+    const Command command =
+        add_command(program, "help", "Explain the program, or one of its commands",
+                    [name, &program] { return print_help(program.app, *name); });
+    command.add("command", "COMMAND", text(*name), "the command to explain; none: the program");
+    command.footer("Example:\n  opaline help bake");
+}
+
 int run_commands(int argc, const char* const* argv) {
     CLI::App app(
         "Opaline bakes how light travels through a scene, so that it can be relit in real time.");
@@ -49,26 +76,18 @@ int run_commands(int argc, const char* const* argv) {
                  "warnings are errors: nothing is written, exit code 3");
     app.add_flag("--quiet", messages.quiet, "print errors only: no warnings, summary or progress");
     app.get_formatter()->column_width(38);
-    Job job;
+    Program program{app};
     // In the order in which they are met.
-    add_example_command(app, job);
-    add_bake_command(app, job);
-    add_render_command(app, job);
+    for (const auto add :
+         {add_example_command, add_bake_command, add_render_command,
 #ifdef OPALINE_HAS_GL
-    add_view_command(app, job);
+          add_view_command,
 #endif
-    add_export_web_command(app, job);
-    add_help_command(app, job);
-    add_plan_command(app, job);
-    add_info_command(app, job);
-    add_verify_command(app, job);
-    add_relight_command(app, job);
-    add_reference_command(app, job);
-    add_compare_command(app, job);
-    add_mie_command(app, job);
-    add_phase_command(app, job);
-    add_slab_command(app, job);
-    add_sweep_command(app, job);
+          add_export_web_command, add_help_command, add_plan_command, add_info_command,
+          add_verify_command, add_relight_command, add_reference_command, add_compare_command,
+          add_mie_command, add_phase_command, add_slab_command, add_sweep_command}) {
+        add(program);
+    }
     app.footer(
         "Exit codes: 0 success; 1 the job ran and the answer is no; 2 bad usage; 3 bad input "
         "file;\n"
@@ -93,7 +112,7 @@ int run_commands(int argc, const char* const* argv) {
     set_message_options(messages);
     int code = kExitSuccess;
     try {
-        code = job();
+        code = program.job();
     } catch (const Refusal& refusal) {
         code = report_error(refusal.error);
     }

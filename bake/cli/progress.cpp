@@ -56,15 +56,13 @@ std::string write_line(const Json& line) {
 
 }  // namespace
 
-void add_progress_option(CLI::App& command, ProgressStyle& style) {
-    command
-        .add_option("--progress", style,
-                    "auto: a bar on a terminal; json: JSON lines on stderr, with event, stage, "
-                    "done, total, seconds and eta_seconds, 22 a stage at most; none")
-        ->transform(one_of<ProgressStyle>({{"auto", ProgressStyle::automatic},
-                                           {"json", ProgressStyle::json},
-                                           {"none", ProgressStyle::none}}))
-        ->option_text("auto|json|none [auto]");
+void add_progress_option(const Command& command, ProgressStyle& style) {
+    command.add("--progress",
+                one_of(style, {{"auto", ProgressStyle::automatic},
+                               {"json", ProgressStyle::json},
+                               {"none", ProgressStyle::none}}),
+                "auto: a bar on a terminal; json: JSON lines on stderr, with event, stage, done, "
+                "total, seconds and eta_seconds, 22 a stage at most; none");
 }
 
 std::string ProgressLines::next(const bake::Progress& progress, double seconds_now) {

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <map>
 #include <string>
 
 #include "bake/base/context.h"
+#include "bake/cli/command.h"
 
 namespace opaline::cli {
 
@@ -16,7 +16,7 @@ enum class ProgressStyle {
 };
 
 /// `--progress`.
-void add_progress_option(CLI::App& command, ProgressStyle& style);
+void add_progress_option(const Command& command, ProgressStyle& style);
 
 /// What a Context calls; may be empty. No bar where messages are quiet.
 ///

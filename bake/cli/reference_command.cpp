@@ -12,7 +12,6 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
-#include "bake/cli/path_integration.h"
 #include "bake/cli/progress.h"
 #include "bake/cli/reference_options.h"
 #include "bake/cli/scene_options.h"
@@ -67,12 +66,13 @@ formats::Asset make_stand_in(const formats::Scene& scene) {
 std::unique_ptr<bake::TextureFiltering> make_filtering(const ReferenceOptions& options,
                                                        const bake::HitScene& surfaces,
                                                        std::uint32_t samples) {
-    if (options.texture_filter == "none") return nullptr;
+    if (options.texture_filter == TextureFilter::none) return nullptr;
     bake::TextureFiltering filtering{bake::make_scene_pyramids(surfaces.scene())};
     if (!filtering.pyramids.any()) return nullptr;
     filtering.step = 1 / std::sqrt(static_cast<float>(samples));
-    filtering.gradient_limit =
-        options.texture_filter == "limited" ? 0.7f : std::numeric_limits<float>::infinity();
+    filtering.gradient_limit = options.texture_filter == TextureFilter::limited
+                                   ? 0.7f
+                                   : std::numeric_limits<float>::infinity();
     filtering.extent = 2 * glm::length(surfaces.half_size());
     return std::make_unique<bake::TextureFiltering>(std::move(filtering));
 }
@@ -134,11 +134,7 @@ void make_picture(const ReferenceOptions& options, const bake::PathSpace& space,
                   const bake::EstimateOptions& wanted, const bake::Context& context) {
     const formats::Asset stand_in = make_stand_in(space.scene.surfaces.scene());
     const auto camera = make_camera(options.camera, stand_in.view());
-    if (options.paths.is_chosen()) {
-        return make_path_picture(
-            {options.output, options.exposure.value_or(0.0f), options.samples, camera}, space,
-            options.paths, context);
-    }
+    if (options.by_integration()) return make_path_picture(options, camera, space, context);
     const auto image = require(bake::estimate_image(space, camera, wanted, context));
     report_lost_paths(options, image.estimate);
     require(formats::write_exr(variance_path(options.output), image.variance));
@@ -166,27 +162,17 @@ int run(const ReferenceOptions& options) {
         paths.max_depth = options.max_depth;
     }
     paths.terms = require(formats::parse_terms(options.terms, formats::TermSet::all, "--terms"));
-    require(check_light(options.light));
-    const MonteCarloOption monte_carlo[] = {{"--receivers", options.receivers > 0},
-                                            {"--seconds", options.seconds > 0},
-                                            {"--max-depth", options.max_depth > 0},
-                                            {"--texture-filter", options.texture_filter != "none"},
-                                            {"--seed", options.seed > 0}};
-    check_method(options.paths, monte_carlo, paths.terms);
+    check_light(options.light);
+    check_method(options, paths.terms);
     check_reference_paths(options, {});
     const auto imported =
-        require(open_scene(options.scene,
-                           {options.metres_per_unit,
-                            {options.allowed_folders.begin(), options.allowed_folders.end()},
-                            {},
-                            options.smooth_normals},
-                           options.media, formats::CloudDetail::fields));
+        open_scene(options.scene, options.import, options.media, formats::CloudDetail::fields);
     check_reference_paths(options, imported.scene.inputs);
     check_traceable(imported.scene);
-    if (options.paths.is_chosen()) {
+    if (options.by_integration()) {
         require(bake::check_path_scene(imported.scene));
     }
-    const auto light = require(open_light(options.light, options.rotate_light));
+    const auto light = open_light(options.light, options.rotate_light);
     // So that an unwritable folder is found out before the work.
     require(formats::AtomicFile::create(options.output));
     require(check_threads(options.threads));
@@ -216,14 +202,13 @@ int run(const ReferenceOptions& options) {
 
 }  // namespace
 
-void add_reference_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<ReferenceOptions>();
-    CLI::App* command = app.add_subcommand(
-        "reference", "Ground truth of a scene by Monte Carlo: a picture, or radiance at vertices");
-    add_reference_options(*command, *options);
-    command->footer(
+void add_reference_command(Program& program) {
+    auto [command, options] = add_command<ReferenceOptions>(
+        program, "reference",
+        "Ground truth of a scene by Monte Carlo: a picture, or radiance at vertices", run);
+    add_reference_options(command, options);
+    command.footer(
         "Example:\n  opaline reference scene.glb --light studio --receivers 100 -o truth.csv");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

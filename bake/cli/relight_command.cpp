@@ -124,11 +124,11 @@ int run(const RelightCommand& options) {
     }
     const auto terms =
         require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
-    require(check_light(options.light));
+    check_light(options.light);
     const auto asset = require(open_asset(options.path));
     require(runtime::check_terms(asset.loaded.view, terms, options.path));
     const auto emitters = require(parse_emitters(asset.loaded.view.emitters, options.emitters));
-    const auto light = require(open_light(options.light, options.rotate_light));
+    const auto light = open_light(options.light, options.rotate_light);
     const formats::AssetView& view = asset.loaded.view;
     const LightWithLayers layers = light_layers_of(view, light, options.time, options.threads);
     const OpenedLight mirrored = layers.mirrored(light);
@@ -159,49 +159,37 @@ int run(const RelightCommand& options) {
 
 }  // namespace
 
-void add_relight_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<RelightCommand>();
-    CLI::App* command = app.add_subcommand(
-        "relight", "Evaluate the outgoing radiance of every receiver under a light");
-    add_asset_argument(*command, options->path);
-    command->add_option("--light", options->light, light_help())->required()->option_text("ENV");
+void add_relight_command(Program& program) {
+    auto [command, options] = add_command<RelightCommand>(
+        program, "relight", "Evaluate the outgoing radiance of every receiver under a light", run);
+    add_asset_argument(command, options.path);
+    command.add("--light", "ENV", text(options.light), light_help()).required();
     command
-        ->add_option("-o,--output", options->output,
-                     ".csv: primitive,vertex,r,g,b, and where the file has volumes "
-                     "OUT-volumes.csv: volume,i,j,k,r,g,b of every node, volumes numbered as "
-                     "`opaline info` does; .ply: points with "
-                     "colours; .exr: one pixel per "
-                     "receiver, 1024 a row")
-        ->required()
-        ->check(file_name())
-        ->option_text("OUT.csv|.ply|.exr");
-    command
-        ->add_option(
-            "--eye", options->eye,
-            "the point everything is seen from [m]; default: each receiver along its own "
-            "normal, and nodes of volumes in the mean of all directions. Only translucent, "
-            "thin-walled and glossy surfaces and volumes depend on it")
-        ->option_text("X,Y,Z");
-    add_emitter_option(*command, options->emitters);
-    command
-        ->add_option("--terms", options->terms,
-                     "components to add up: all, or some of " +
-                         formats::term_names(formats::TermSet::baked) + ". " +
-                         formats::term_names(formats::TermSet::separable, " and ") +
-                         " apart need a bake with --separate-terms")
-        ->check(term_list())
-        ->option_text("all|LIST [all]");
-    add_rotate_light_option(*command, options->rotate_light);
-    add_time_option(*command, options->time);
-    add_threads_option(*command, options->threads, "0: one per core");
-    command->add_flag("--json", options->json,
-                      "print JSON: receivers, mean and maximum of their radiance");
-    command->footer(
+        .add("-o,--output", "OUT.csv|.ply|.exr", file_name(options.output),
+             ".csv: primitive,vertex,r,g,b, and where the file has volumes OUT-volumes.csv: "
+             "volume,i,j,k,r,g,b of every node, volumes numbered as `opaline info` does; .ply: "
+             "points with colours; .exr: one pixel per receiver, 1024 a row")
+        .required();
+    command.add("--eye", "X,Y,Z", text(options.eye),
+                "the point everything is seen from [m]; default: each receiver along its own "
+                "normal, and nodes of volumes in the mean of all directions. Only translucent, "
+                "thin-walled and glossy surfaces and volumes depend on it");
+    add_emitter_option(command, options.emitters);
+    command.add("--terms", "all|LIST [all]", term_list(options.terms),
+                "components to add up: all, or some of " +
+                    formats::term_names(formats::TermSet::baked) + ". " +
+                    formats::term_names(formats::TermSet::separable, " and ") +
+                    " apart need a bake with --separate-terms");
+    add_rotate_light_option(command, options.rotate_light);
+    add_time_option(command, options.time);
+    add_threads_option(command, options.threads, "0: one per core");
+    command.add_flag("--json", options.json,
+                     "print JSON: receivers, mean and maximum of their radiance");
+    command.footer(
         "A cloud layer lights receivers and nodes as it is seen from the centre of their bounds, "
         "those\n"
         "that stand far apart from several points.\n\n"
         "Example:\n  opaline relight scene.opal --light studio -o radiance.csv");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

@@ -84,7 +84,10 @@ void draw_errors(const RenderCommand& options, const OpenedAsset& asset) {
             options.frame.frames, drawing);
 }
 
-int run(const RenderCommand& options) {
+int run(const RenderCommand& given) {
+    RenderCommand options = given;
+    options.frame.turn = given.turn.value_or(given.time_step ? 0 : 360);
+    options.frame.on_progress = make_progress_printer(given.progress, "render");
     std::vector<OutputFile> outputs;
     for (std::uint32_t frame = 0; frame < options.frame.frames; ++frame) {
         outputs.push_back({"--output", frame_path(options.frame, frame), {".png", ".exr"}});
@@ -93,7 +96,7 @@ int run(const RenderCommand& options) {
     require(check_outputs(outputs, inputs));
     const auto terms =
         require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
-    require(check_light(options.light));
+    check_light(options.light);
     const auto asset = require(open_asset(options.path));
     if (options.error_white > 0) {
         draw_errors(options, asset);
@@ -109,7 +112,7 @@ int run(const RenderCommand& options) {
     const auto emitters = require(parse_emitters(view.emitters, options.emitters));
     check_motion(options, view);
     const auto camera = make_camera(options.camera, view);
-    const auto light = require(open_light(options.light, options.rotate_light));
+    const auto light = open_light(options.light, options.rotate_light);
     const std::uint32_t frames = options.frame.frames;
     const std::uint32_t step = options.time_step ? 1 : frames;  // frames of one time
     Drawing drawing;
@@ -128,56 +131,39 @@ int run(const RenderCommand& options) {
 
 }  // namespace
 
-void add_render_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<RenderCommand>();
-    CLI::App* command = app.add_subcommand("render", "Make pictures of an .opal file, headless");
-    add_asset_argument(*command, options->path);
-    command->add_option("--light", options->light, light_help())->option_text("ENV [studio]");
+void add_render_command(Program& program) {
+    auto [command, options] = add_command<RenderCommand>(
+        program, "render", "Make pictures of an .opal file, headless", run);
+    add_asset_argument(command, options.path);
+    command.add("--light", "ENV [studio]", text(options.light), light_help());
     command
-        ->add_option("-o,--output", options->frame.output,
-                     ".png: tone-mapped, sRGB; .exr: linear radiance")
-        ->required()
-        ->check(file_name())
-        ->option_text("OUT.png|.exr");
-    add_emitter_option(*command, options->emitters);
-    add_camera_options(*command, options->camera);
-    command
-        ->add_option("--backend", options->frame.backend,
-                     "gl: OpenGL 4.5 through EGL; cpu: software")
-        ->transform(one_of<Backend>({{"gl", Backend::gl}, {"cpu", Backend::cpu}}))
-        ->option_text("gl|cpu [gl, else cpu]");
-    add_time_option(*command, options->time);
-    command
-        ->add_option("--frames", options->frame.frames,
-                     "N pictures OUT-0001.png ...: a turntable, once around the target, or with "
-                     "--time-step a film")
-        ->transform(whole_number(1, 9999))
-        ->option_text("N [1]");
-    command
-        ->add_option("--time-step", options->time_step,
-                     "from frame to frame cloud layers are S later: their wind moves them, and "
-                     "their own frames [s]")
-        ->check(real_number(-1e9, 1e9))
-        ->option_text("S");
-    command
-        ->add_option("--turn", options->turn,
-                     "what all frames together turn the camera around the target by [degrees]")
-        ->check(real_number(-1e6, 1e6))
-        ->option_text("DEG [360, with --time-step 0]");
-    add_look_options(*command, {options->rotate_light, options->terms, options->frame.exposure,
-                                options->frame.tone_map, options->coefficients});
-    command
-        ->add_option("--receiver-errors", options->error_white,
-                     "show the errors of rows that `bake --receiver-errors` stored in place of "
-                     "light: black for 0, then red, yellow, and white from E on; options of light "
-                     "and exposure change nothing")
-        ->check(real_number(1e-6, 10))
-        ->option_text("E");
-    add_threads_option(*command, options->frame.threads, "0: one per core");
-    command->add_flag("--stats", options->frame.stats, "print timings");
-    add_progress_option(*command, options->progress);
-    group_options(
-        *command,
+        .add("-o,--output", "OUT.png|.exr", file_name(options.frame.output),
+             ".png: tone-mapped, sRGB; .exr: linear radiance")
+        .required();
+    add_emitter_option(command, options.emitters);
+    add_camera_options(command, options.camera);
+    command.add("--backend", "gl|cpu [gl, else cpu]",
+                one_of(options.frame.backend, {{"gl", Backend::gl}, {"cpu", Backend::cpu}}),
+                "gl: OpenGL 4.5 through EGL; cpu: software");
+    add_time_option(command, options.time);
+    command.add("--frames", "N [1]", whole_number(options.frame.frames, 1, 9999),
+                "N pictures OUT-0001.png ...: a turntable, once around the target, or with "
+                "--time-step a film");
+    command.add("--time-step", "S", real_number(options.time_step, -1e9, 1e9),
+                "from frame to frame cloud layers are S later: their wind moves them, and their "
+                "own frames [s]");
+    command.add("--turn", "DEG [360, with --time-step 0]", real_number(options.turn, -1e6, 1e6),
+                "what all frames together turn the camera around the target by [degrees]");
+    add_look_options(command, {options.rotate_light, options.terms, options.frame.exposure,
+                               options.frame.tone_map, options.coefficients});
+    command.add(
+        "--receiver-errors", "E", real_number(options.error_white, 1e-6, 10),
+        "show the errors of rows that `bake --receiver-errors` stored in place of light: black for "
+        "0, then red, yellow, and white from E on; options of light and exposure change nothing");
+    add_threads_option(command, options.frame.threads, "0: one per core");
+    command.add_flag("--stats", options.frame.stats, "print timings");
+    add_progress_option(command, options.progress);
+    command.group(
         {{"", {"--light", "--rotate-light", "--output", "--size", "--exposure"}},
          {"Camera",
           {"--eye", "--azimuth", "--elevation", "--distance", "--target", "--up", "--fov"}},
@@ -185,22 +171,14 @@ void add_render_command(CLI::App& app, Job& job) {
          {"What is shown",
           {"--emitter", "--terms", "--tone-map", "--coefficients", "--receiver-errors"}}},
         "How");
-    command->footer(
+    command.footer(
         "A cloud layer lights the file's meshes and volumes as it is seen from the centre of "
         "their\n"
         "bounds, those that stand far apart from several points.\n"
-        "A layer alone is seen from 1.7 m above the ground; --elevation 20 looks down on "
-        "it\n"
+        "A layer alone is seen from 1.7 m above the ground; --elevation 20 looks down on it\n"
         "from above, --azimuth 140 toward the sun of sky:T,EL.\n"
         "--frames 48 --time-step 60 shows 48 minutes of it.\n\n"
         "Example:\n  opaline render scene.opal --light sky:3,35 --rotate-light 90 -o scene.png");
-    command->callback([options, &job] {
-        job = [options] {
-            options->frame.turn = options->turn.value_or(options->time_step ? 0 : 360);
-            options->frame.on_progress = make_progress_printer(options->progress, "render");
-            return run(*options);
-        };
-    });
 }
 
 }  // namespace opaline::cli

@@ -15,25 +15,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-void append_plan(Json& array, const std::vector<bake::PlanEntry>& plan) {
-    for (const bake::PlanEntry& entry : plan) {
-        array.push_back({{"effect", entry.name},
-                         {"subject", entry.subject.name},
-                         {"decision", entry.on ? "on" : "off"},
-                         {"forced", entry.forced},
-                         {"reason", entry.reason},
-                         {"bound", entry.bound},
-                         {"model_error", entry.model_error},
-                         {"predicted_seconds", entry.predicted_seconds},
-                         {"predicted_bytes", entry.predicted_bytes},
-                         {"saved_seconds", entry.saved_seconds},
-                         {"saved_bytes", entry.saved_bytes}});
-    }
-}
-
-Json plan_array(const std::vector<bake::PlanEntry>& plan) {
+template <class... Plans>
+Json plan_array(const Plans&... plans) {
     Json array = Json::array();
-    append_plan(array, plan);
+    for (const std::vector<bake::PlanEntry>* plan : {&plans...}) {
+        for (const bake::PlanEntry& entry : *plan) {
+            array.push_back({{"effect", entry.name},
+                             {"subject", entry.subject.name},
+                             {"decision", entry.on ? "on" : "off"},
+                             {"forced", entry.forced},
+                             {"reason", entry.reason},
+                             {"bound", entry.bound},
+                             {"model_error", entry.model_error},
+                             {"predicted_seconds", entry.predicted_seconds},
+                             {"predicted_bytes", entry.predicted_bytes},
+                             {"saved_seconds", entry.saved_seconds},
+                             {"saved_bytes", entry.saved_bytes}});
+        }
+    }
     return array;
 }
 
@@ -103,8 +102,7 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     report["seed"] = result.knobs.seed;
     report["threads"] = result.threads;
     report["knobs"] = bake::knobs_json(result.knobs);
-    report["plan"] = plan_array(result.plan);
-    append_plan(report["plan"], result.volume_plan);
+    report["plan"] = plan_array(result.plan, result.volume_plan);
     report["stages"] = Json::array();
     std::vector<bake::StageCost> costs = expected.cost.stages;
     for (const bake::StageReport& stage : result.stages) {
@@ -123,16 +121,8 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     if (result.accuracy) {
         report["accuracy"] = accuracy_json(*result.accuracy);
     }
-    if (result.model_error) {
-        report["model_error"] = bake::model_error_json(*result.model_error);
-        report["model_error"]["seconds"] = result.model_error->seconds;
-    }
-    if (result.volume_error) {
-        report["volume_error"] = bake::volume_error_json(*result.volume_error);
-    }
-    if (result.layer_error) {
-        report["layer_error"] = bake::layer_error_json(*result.layer_error);
-    }
+    bake::add_other_errors(result, report);
+    if (result.model_error) report["model_error"]["seconds"] = result.model_error->seconds;
     for (const bake::VolumeTrial& trial : result.volume_trials) {
         report["volume_trials"].push_back(
             {{"quality", bake::quality_name(trial.quality)}, {"error", trial.error}});

@@ -21,14 +21,29 @@ namespace {
 
 using bake::Quality;
 
-// "all" or a number; CLI11 hands over the text. All of the largest cube map are 6 x 128 x 128.
-std::string parse_coefficients(std::string& text) {
-    if (text == "all") {
-        text = std::to_string(bake::kAllCoefficients);
-        return {};
-    }
-    const std::string fault = whole_number(7, 98304)(text);
-    return fault.empty() ? fault : fault + ", nor `all`";
+// "all" or a number. All of the largest cube map are 6 x 128 x 128.
+OptionValue coefficients_or_all(std::uint32_t& coefficients) {
+    OptionValue number = whole_number(coefficients, 7, 98304);
+    return {[&coefficients, take = std::move(number.take)](const std::string& text) {
+        if (text == "all") {
+            coefficients = bake::kAllCoefficients;
+            return std::string();
+        }
+        const std::string fault = take(text);
+        return fault.empty() ? fault : fault + ", nor `all`";
+    }};
+}
+
+OptionValue folders(std::vector<std::filesystem::path>& to) {
+    return {[&to](const std::string& text) {
+                std::error_code ignored;
+                if (!std::filesystem::is_directory(text, ignored)) {
+                    return fmt::format("'{}' is not a folder", shorten(text));
+                }
+                to.emplace_back(text);
+                return std::string();
+            },
+            OptionValue::Count::repeated};
 }
 
 std::string quality_help() {
@@ -69,112 +84,90 @@ void announce_size(const std::string& scene, const formats::SceneCounts& counts)
                            printable(scene), 1e-6 * vertices, format_seconds(kSeconds * vertices)));
 }
 
-// The option of an effect's knob.
-void add_knob_option(CLI::App& command, const bake::KnobSpec& knob, bake::BakeOptions& options) {
-    const auto take = [&knob, &options](const double& value) { options.set(knob, value); };
-    CLI::Option* const option =
-        command.add_option_function<double>(std::string(knob.option), take, std::string(knob.help));
-    option->option_text(std::string(knob.placeholder));
-    if (!knob.words.empty()) {
-        std::vector<std::pair<std::string, int>> words;
-        for (const std::string_view word : knob.words) {
-            words.emplace_back(word, static_cast<int>(words.size()));
-        }
-        option->transform(one_of<int>(words));
-    } else if (!knob.allowed.empty()) {
-        std::vector<std::pair<std::string, int>> names;
-        for (const double value : knob.allowed) {
-            names.emplace_back(std::to_string(static_cast<int>(value)), static_cast<int>(value));
-        }
-        option->transform(one_of<int>(names));
-    } else if (knob.whole) {
-        option->transform(whole_number(static_cast<std::uint64_t>(knob.lowest),
-                                       static_cast<std::uint64_t>(knob.highest)));
-    } else {
-        option->check(real_number(knob.lowest, knob.highest));
+// Of an effect's knob.
+OptionValue knob_value(const bake::KnobSpec& knob, bake::BakeOptions& options) {
+    const auto put = [&knob, &options](auto value) {
+        options.set(knob, static_cast<double>(value));
+    };
+    if (knob.words.empty() && knob.allowed.empty()) {
+        return knob.whole ? detail::whole_number(static_cast<std::uint64_t>(knob.lowest),
+                                                 static_cast<std::uint64_t>(knob.highest), put)
+                          : detail::real_number(knob.lowest, knob.highest, put);
     }
+    std::vector<std::string> names(knob.words.begin(), knob.words.end());
+    for (const double value : knob.allowed) {
+        names.push_back(fmt::format("{}", value));
+    }
+    return detail::one_of(std::move(names), [&knob, put](std::size_t i) {
+        put(knob.words.empty() ? knob.allowed[i] : static_cast<double>(i));
+    });
 }
 
 }  // namespace
 
-void add_allow_path_option(CLI::App& command, std::vector<std::string>& folders) {
+void add_scene_argument(const Command& command, SceneSource& source) {
     command
-        .add_option("--allow-path", folders,
-                    "folder whose files the scene and its media may name too, besides those in "
-                    "their own folders; may be repeated")
-        ->check(CLI::ExistingDirectory)
-        ->take_all()
-        ->allow_extra_args(false)
-        ->option_text("DIR");
+        .add("scene", "SCENE", text(source.scene),
+             "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a media "
+             "file alone")
+        .required();
 }
 
-void add_smooth_normals_option(CLI::App& command, double& degrees) {
-    command
-        .add_option("--smooth-normals", degrees,
-                    "of meshes without NORMAL: smooth across edges of less than this angle; 0: "
-                    "flat, as glTF says")
-        ->check(real_number(0, 180))
-        ->option_text("DEGREES [0]");
+void add_allow_path_option(const Command& command, SceneSource& source) {
+    command.add("--allow-path", "DIR", folders(source.import.allowed_folders),
+                "folder whose files the scene and its media may name too, besides those in their "
+                "own folders; may be repeated");
 }
 
-void add_subject_options(CLI::App& command, SceneOptions& options) {
-    command
-        .add_option("scene", options.scene,
-                    "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a "
-                    "media file alone")
-        ->required()
-        ->option_text("SCENE");
-    command
-        .add_option(
-            "--media", options.media,
-            "what translucent materials are made of; formats/media/README.md lists the keys")
-        ->check(file_name())
-        ->option_text("FILE.json");
-    add_allow_path_option(command, options.allowed_folders);
-    command
-        .add_option(
-            "--effects", options.effects,
-            std::string(
-                "what to simulate: auto, what the scene calls for; all, everything that concerns "
-                "it, however little it adds, and without shortcuts; or a list of effects, of ") +
-                "which this version has: " + list_effects(", "))
-        ->option_text("auto|all|LIST [auto]");
+void add_unit_options(const Command& command, SceneSource& source) {
+    // From a tenth of a nanometre to a light year.
+    command.add("--metres-per-unit", "X [1]",
+                real_number(source.import.metres_per_unit, 1e-10, 1e16),
+                "length of one unit of the scene file");
+    command.add("--smooth-normals", "DEGREES [0]", real_number(source.import.smooth_angle, 0, 180),
+                "of meshes without NORMAL: smooth across edges of less than this angle; 0: flat, "
+                "as glTF says");
+}
+
+void add_subject_options(const Command& command, SceneOptions& options) {
+    add_scene_argument(command, options);
+    command.add("--media", "FILE.json", file_name(options.media),
+                "what translucent materials are made of; formats/media/README.md lists the keys");
+    add_allow_path_option(command, options);
+    command.add(
+        "--effects", "auto|all|LIST [auto]", text(options.effects),
+        std::string(
+            "what to simulate: auto, what the scene calls for; all, everything that concerns it, "
+            "however little it adds, and without shortcuts; or a list of effects, of ") +
+            "which this version has: " + list_effects(", "));
     add_seed_option(command, options.bake.seed,
                     "of everything random: which receivers the error is measured at");
     add_threads_option(command, options.bake.threads);
-    command
-        .add_option("--metres-per-unit", options.metres_per_unit,
-                    "length of one unit of the scene file")
-        ->check(real_number(kLeastUnit, kMostUnit))
-        ->option_text("X [1]");
-    add_smooth_normals_option(command, options.smooth_normals);
+    add_unit_options(command, options);
     add_memory_option(command, options.memory_limit);
 }
 
-void add_scene_options(CLI::App& command, SceneOptions& options) {
+void add_scene_options(const Command& command, SceneOptions& options) {
     add_subject_options(command, options);
-    command.add_option("--quality", options.bake.quality, quality_help())
-        ->transform(one_of<Quality>({{"draft", Quality::draft},
-                                     {"preview", Quality::preview},
-                                     {"production", Quality::production},
-                                     {"reference", Quality::reference}}))
-        ->option_text("draft|preview|production|reference [preview]");
-    command
-        .add_option("--cubemap", options.bake.cubemap_size,
-                    "texels along a face of the light's cube map: 8, 16, 32, 64 or 128; default as "
-                    "the quality says")
-        ->transform(one_of<int>({{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}, {"128", 128}}))
-        ->option_text("N");
-    command
-        .add_option("--coefficients", options.bake.coefficients,
-                    "wavelet coefficients kept per receiver in the mean over a mesh, 7 or more, or "
-                    "`all`; default as the quality says")
-        ->transform(CLI::Validator(parse_coefficients, ""))
-        ->option_text("M");
+    command.add("--quality",
+                one_of(options.bake.quality, {{"draft", Quality::draft},
+                                              {"preview", Quality::preview},
+                                              {"production", Quality::production},
+                                              {"reference", Quality::reference}}),
+                quality_help());
+    command.add("--cubemap", "N",
+                one_of(options.bake.cubemap_size,
+                       {{"8", 8}, {"16", 16}, {"32", 32}, {"64", 64}, {"128", 128}}),
+                "texels along a face of the light's cube map: 8, 16, 32, 64 or 128; default as the "
+                "quality says");
+    command.add("--coefficients", "M", coefficients_or_all(options.bake.coefficients),
+                "wavelet coefficients kept per receiver in the mean over a mesh, 7 or more, or "
+                "`all`; default as the quality says");
     for (const bake::EffectDescriptor& effect : bake::all_effects().effects) {
         for (const bake::KnobSpec* knob : effect.knobs) {
             if (!knob->option.empty()) {
-                add_knob_option(command, *knob, options.bake);
+                command.add(std::string(knob->option), std::string(knob->placeholder),
+                            knob_value(*knob, options.bake), std::string(knob->help));
             }
         }
     }
@@ -183,15 +176,13 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
                          " scattering apart, so that `render --terms` can show each");
 }
 
-void add_error_option(CLI::App& command, SceneOptions& options) {
+void add_error_option(const Command& command, SceneOptions& options) {
     command
-        .add_option("--error", options.bake.error,
-                    "relative RMS error that the file may have, of model and numbers together: the "
-                    "cheapest model that leaves enough is taken, then a pilot measures what each "
-                    "knob costs and picks the cheapest; those given stay")
-        ->check(real_number(1e-4, 0.99))
-        ->excludes("--quality")
-        ->option_text("E");
+        .add("--error", "E", real_number(options.bake.error, 1e-4, 0.99),
+             "relative RMS error that the file may have, of model and numbers together: the "
+             "cheapest model that leaves enough is taken, then a pilot measures what each knob "
+             "costs and picks the cheapest; those given stay")
+        .excludes(command.find("--quality"));
 }
 
 formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs& knobs,
@@ -211,13 +202,9 @@ formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs
         if (status) announce_size(options.scene, counts);
         return status;
     };
-    auto imported =
-        require(open_scene(options.scene,
-                           {options.metres_per_unit,
-                            {options.allowed_folders.begin(), options.allowed_folders.end()},
-                            check_size,
-                            options.smooth_normals},
-                           options.media, detail));
+    formats::ImportOptions wanted = options.import;
+    wanted.check_size = check_size;
+    auto imported = open_scene(options.scene, wanted, options.media, detail);
     require(bake::check_bakeable(imported.scene));
     require(check(bake::count_memory(bake::all_effects(), imported.scene, knobs)));
     require(check_threads(threads));

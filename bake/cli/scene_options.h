@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "bake/cli/command.h"
 #include "bake/plan/bake_plan.h"
 #include "formats/gltf/import_gltf.h"
 #include "formats/media/load_clouds.h"
@@ -11,33 +11,33 @@
 
 namespace opaline::cli {
 
-/// `--metres-per-unit`: from a tenth of a nanometre to a light year.
-inline constexpr double kLeastUnit = 1e-10, kMostUnit = 1e16;
+/// A scene and how it is read.
+struct SceneSource {
+    std::string scene, media;
+    formats::ImportOptions import;
+};
 
-/// `--smooth-normals`: of primitives without NORMAL.
-void add_smooth_normals_option(CLI::App& command, double& degrees);
+void add_scene_argument(const Command& command, SceneSource& source);
+/// `--allow-path`, as often as wanted.
+void add_allow_path_option(const Command& command, SceneSource& source);
+/// `--metres-per-unit`, `--smooth-normals`.
+void add_unit_options(const Command& command, SceneSource& source);
 
 /// Options common to `bake`, `plan` and `sweep`.
-struct SceneOptions {
-    std::string scene, media;
-    std::vector<std::string> allowed_folders;
-    double metres_per_unit = 1.0, smooth_normals = 0.0;
+struct SceneOptions : SceneSource {
     std::string effects = "auto";
     std::uint64_t memory_limit = 0;  ///< [bytes]; 0: what the machine has
     bake::BakeOptions bake;
 };
 
-/// `--allow-path`, as often as wanted.
-void add_allow_path_option(CLI::App& command, std::vector<std::string>& folders);
-
 /// The scene, its media, and options without influence on accuracy: effects, seed, threads, unit.
-void add_subject_options(CLI::App& command, SceneOptions& options);
+void add_subject_options(const Command& command, SceneOptions& options);
 
 /// The same and every knob.
-void add_scene_options(CLI::App& command, SceneOptions& options);
+void add_scene_options(const Command& command, SceneOptions& options);
 
 /// `--error`, in place of `--quality`.
-void add_error_option(CLI::App& command, SceneOptions& options);
+void add_error_option(const Command& command, SceneOptions& options);
 
 /// Opens the scene and its media (open_scene). What a bake with these knobs is predicted to need
 /// more memory for than there is, is refused before it is built. Errors: also resource.

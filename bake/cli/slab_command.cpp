@@ -22,9 +22,8 @@ using Json = nlohmann::ordered_json;
 
 struct SlabCommand : SlabQuestion {
     TextFormat format = TextFormat::json;
-    CLI::Option *g_option = nullptr, *phase_option = nullptr, *orders_option = nullptr,
-                *streams_option = nullptr;
-    std::vector<CLI::Option*> walk_options;
+    Option g_option, phase_option, orders_option, streams_option;
+    std::vector<Option> walk_options;
 };
 
 /// Photons in a layer without absorption scatter about as often as the layer is thick, and long
@@ -33,19 +32,19 @@ constexpr double kMostWalkDepth = 1e3;
 constexpr unsigned kMostStreams = 128, kMostOrders = 64;
 
 void check_slab_options(const SlabCommand& options) {
-    const bool by_g = options.g_option->count() > 0, by_table = options.phase_option->count() > 0;
+    const bool by_g = options.g_option.is_given(), by_table = options.phase_option.is_given();
     if (by_g == by_table) {
         refuse_usage("slab", by_g ? "two phase functions" : "no phase function",
                      "give --g or --phase, one of them");
     }
     if (options.method != SlabMethod::monte_carlo) {
-        for (const CLI::Option* option : options.walk_options) {
-            if (option->count() > 0) {
-                refuse_usage(option->get_name(), "this method draws no photons",
+        for (const Option& option : options.walk_options) {
+            if (option.is_given()) {
+                refuse_usage(option.name(), "this method draws no photons",
                              "give it with --method monte-carlo alone");
             }
         }
-    } else if (options.streams_option->count() > 0) {
+    } else if (options.streams_option.is_given()) {
         refuse_usage("--streams", "photons have no streams",
                      "leave it out, or give another --method");
     } else if (options.optical_depth > kMostWalkDepth) {
@@ -61,11 +60,11 @@ void check_slab_options(const SlabCommand& options) {
         refuse_usage("--eta", "radiance has no boundaries", "leave out --views");
     }
     if (options.method != SlabMethod::model && options.method != SlabMethod::table) return;
-    if (options.method == SlabMethod::table && options.streams_option->count() > 0) {
+    if (options.method == SlabMethod::table && options.streams_option.is_given()) {
         refuse_usage("--streams", "tables have their own number of streams",
                      "leave it out, or give another --method");
     }
-    if (options.orders_option->count() > 0) {
+    if (options.orders_option.is_given()) {
         refuse_usage("--orders", "this method has the orders 0, 1 and 2 and the rest",
                      "leave it out");
     }
@@ -125,94 +124,65 @@ int run(const SlabCommand& options) {
     return kExitSuccess;
 }
 
-void add_slab_accuracy(CLI::App& command, SlabCommand& options) {
+void add_slab_accuracy(const Command& command, SlabCommand& options) {
     options.orders_option =
-        command
-            .add_option("--orders", options.orders,
-                        "scattering orders printed apart, from 0 on; the rest is printed as one")
-            ->transform(whole_number(1, kMostOrders))
-            ->option_text("N [8]");
+        command.add("--orders", "N [8]", whole_number(options.orders, 1, kMostOrders),
+                    "scattering orders printed apart, from 0 on; the rest is printed as one");
     options.streams_option =
-        command
-            .add_option("--streams", options.streams,
-                        "directions a hemisphere of the methods adding and model")
-            ->transform(whole_number(1, kMostStreams))
-            ->option_text("N [48]");
+        command.add("--streams", "N [48]", whole_number(options.streams, 1, kMostStreams),
+                    "directions a hemisphere of the methods adding and model");
     options.walk_options = {
-        command.add_option("--photons", options.photons, "paths of the method monte-carlo")
-            ->transform(whole_number(1, 1000000000))
-            ->option_text("N [1000000]"),
+        command.add("--photons", "N [1000000]", whole_number(options.photons, 1, 1000000000),
+                    "paths of the method monte-carlo"),
         add_seed_option(command, options.seed, "of these paths: another gives other noise"),
-        command
-            .add_option("--threads", options.threads,
-                        "for these paths, 0: one per core; the result is the same for any number")
-            ->transform(whole_number(0, 1024))
-            ->option_text("T [0]")};
+        command.add("--threads", "T [0]", whole_number(options.threads, 0, 1024),
+                    "for these paths, 0: one per core; the result is the same for any number")};
 }
 
 }  // namespace
 
-void add_slab_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<SlabCommand>();
-    CLI::App* command = app.add_subcommand(
-        "slab", "Say how much light a plane layer reflects and transmits, by scattering order");
+void add_slab_command(Program& program) {
+    auto [command, options] = add_command<SlabCommand>(
+        program, "slab",
+        "Say how much light a plane layer reflects and transmits, by scattering order", run);
     command
-        ->add_option("--optical-depth", options->optical_depth,
-                     "extinction times thickness, 0 to 1e6 (monte-carlo: 1e3)")
-        ->check(real_number(0, bake::kMaxSlabDepth))
-        ->required()
-        ->option_text("T");
-    command
-        ->add_option("--albedo", options->albedo,
-                     "share of the extinction that scatters, 0 to 1; model and table: 1 alone")
-        ->check(real_number(0, 1))
-        ->option_text("A [1]");
-    options->g_option =
-        command
-            ->add_option("--g", options->g,
-                         "mean cosine of a Henyey-Greenstein phase function, -0.99 to 0.99")
-            ->check(real_number(-formats::media::kMaxMeanCosine, formats::media::kMaxMeanCosine))
-            ->option_text("G");
-    options->phase_option =
-        command
-            ->add_option("--phase", options->phase,
-                         "a table in its place, as media files name them: lines of a cosine and a "
-                         "value, cosines ascending from -1 to 1, values relative")
-            ->check(file_name())
-            ->option_text("FILE");
+        .add("--optical-depth", "T", real_number(options.optical_depth, 0, bake::kMaxSlabDepth),
+             "extinction times thickness, 0 to 1e6 (monte-carlo: 1e3)")
+        .required();
+    command.add("--albedo", "A [1]", real_number(options.albedo, 0, 1),
+                "share of the extinction that scatters, 0 to 1; model and table: 1 alone");
+    options.g_option = command.add(
+        "--g", "G",
+        real_number(options.g, -formats::media::kMaxMeanCosine, formats::media::kMaxMeanCosine),
+        "mean cosine of a Henyey-Greenstein phase function, -0.99 to 0.99");
+    options.phase_option =
+        command.add("--phase", "FILE", file_name(options.phase),
+                    "a table in its place, as media files name them: lines of a cosine and a "
+                    "value, cosines ascending from -1 to 1, values relative");
     constexpr double kLeastCosine = 0.001;
-    command->add_option("--cosine", options->cosine, "between the light and the normal, 0.001 to 1")
-        ->check(real_number(kLeastCosine, 1))
-        ->option_text("MU [1]");
-    command
-        ->add_option("--eta", options->eta,
-                     "index of the layer over that of both sides, 1/3 to 3: smooth boundaries that "
-                     "reflect and refract; model and table: 1 alone")
-        ->check(real_number(formats::media::kMinEta, formats::media::kMaxEta))
-        ->option_text("E [1]");
-    command
-        ->add_option(
-            "--method", options->method,
-            "adding: exact but for a small error, which is printed; monte-carlo: photons, "
-            "with standard errors; model: one-dimensional, fitted to adding at this cosine; table: "
-            "interpolated as renderers of cloud layers do")
-        ->transform(one_of<SlabMethod>({{"adding", SlabMethod::adding},
+    command.add("--cosine", "MU [1]", real_number(options.cosine, kLeastCosine, 1),
+                "between the light and the normal, 0.001 to 1");
+    command.add("--eta", "E [1]",
+                real_number(options.eta, formats::media::kMinEta, formats::media::kMaxEta),
+                "index of the layer over that of both sides, 1/3 to 3: smooth boundaries that "
+                "reflect and refract; model and table: 1 alone");
+    command.add("--method",
+                one_of(options.method, {{"adding", SlabMethod::adding},
                                         {"monte-carlo", SlabMethod::monte_carlo},
                                         {"model", SlabMethod::model},
-                                        {"table", SlabMethod::table}}))
-        ->option_text("adding|monte-carlo|model|table [adding]");
+                                        {"table", SlabMethod::table}}),
+                "adding: exact but for a small error, which is printed; monte-carlo: photons, with "
+                "standard errors; model: one-dimensional, fitted to adding at this cosine; table: "
+                "interpolated as renderers of cloud layers do");
     constexpr unsigned kMostViews = 1000;
-    command
-        ->add_option("--views", options->views,
-                     "also print radiance by order at so many angles in the plane of light and "
-                     "normal, 0: none; over that of a white diffuse surface in the same light")
-        ->transform(whole_number(0, kMostViews))
-        ->option_text("N [0]");
-    add_slab_accuracy(*command, *options);
+    command.add("--views", "N [0]", whole_number(options.views, 0, kMostViews),
+                "also print radiance by order at so many angles in the plane of light and normal, "
+                "0: none; over that of a white diffuse surface in the same light");
+    add_slab_accuracy(command, options);
     add_format_options(
-        *command, options->format,
+        command, options.format,
         "csv: lines of quantity,order,value; with --views of degrees,side,order,radiance");
-    command->footer(
+    command.footer(
         "Prints the shares of a beam's flux that a layer reflects, transmits and absorbs, all\n"
         "together and by number of scatterings: order 0 is light that goes straight through or "
         "that\n"
@@ -225,7 +195,6 @@ void add_slab_command(CLI::App& app, Job& job) {
         "Example:\n  opaline slab --optical-depth 10 --g 0.85 --cosine 0.5\n"
         "  opaline slab --optical-depth 2 --albedo 0.9 --g 0.75 --method monte-carlo --format csv\n"
         "  opaline slab --optical-depth 5 --albedo 0.99 --g 0.8 --eta 1.4");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

@@ -133,29 +133,22 @@ int run(const SweepCommand& options) {
 
 }  // namespace
 
-void add_sweep_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<SweepCommand>();
-    CLI::App* command = app.add_subcommand(
-        "sweep", "Bake a scene in many ways, and show what accuracy costs in time and bytes");
-    add_subject_options(*command, options->scene);
+void add_sweep_command(Program& program) {
+    auto [command, options] = add_command<SweepCommand>(
+        program, "sweep",
+        "Bake a scene in many ways, and show what accuracy costs in time and bytes", run);
+    add_subject_options(command, options.scene);
     command
-        ->add_option("-o,--output", options->folder,
-                     "the folder for sweep.csv, sweep.json and report.html; made if missing")
-        ->required()
-        ->check(file_name())
-        ->option_text("DIR");
-    command
-        ->add_option(
-            "--seconds", options->seconds,
-            "time for all bakes and what they are compared with; what does not fit is left "
-            "out and named")
-        ->check(real_number(1, 1e6))
-        ->option_text("S [300]");
-    command->add_option("--light", options->light, "of the page's pictures: " + light_help())
-        ->option_text("ENV [sky:3,35]");
-    add_progress_option(*command, options->progress);
-    command->footer("Example:\n  opaline sweep scene.glb -o sweep");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
+        .add("-o,--output", "DIR", file_name(options.folder),
+             "the folder for sweep.csv, sweep.json and report.html; made if missing")
+        .required();
+    command.add("--seconds", "S [300]", real_number(options.seconds, 1, 1e6),
+                "time for all bakes and what they are compared with; what does not fit is left out "
+                "and named");
+    command.add("--light", "ENV [sky:3,35]", text(options.light),
+                "of the page's pictures: " + light_help());
+    add_progress_option(command, options.progress);
+    command.footer("Example:\n  opaline sweep scene.glb -o sweep");
 }
 
 }  // namespace opaline::cli

@@ -12,6 +12,7 @@
 #include "bake/cli/inputs.h"
 #include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
 #include "formats/opal/receiver_errors.h"
 
 namespace opaline::cli {
@@ -77,18 +78,17 @@ int run(const VerifyCommand& options) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<VerifyCommand>();
-    CLI::App* command = app.add_subcommand(
-        "verify", "Check .opal files: structure, checksums, ranges, finite numbers");
-    command->add_option("file", options->paths, "the .opal files")
-        ->required()
-        ->option_text("FILE.opal...");
-    command->add_flag("--json", options->json, "print JSON: files[]{file,sound,errors[]}");
-    command->footer(
+void add_verify_command(Program& program) {
+    auto [command, options] = add_command<VerifyCommand>(
+        program, "verify", "Check .opal files: structure, checksums, ranges, finite numbers", run);
+    command
+        .add("file", "FILE.opal...", texts(options.paths, OptionValue::Count::rest),
+             "the .opal files")
+        .required();
+    command.add_flag("--json", options.json, "print JSON: files[]{file,sound,errors[]}");
+    command.footer(
         "Exit code 1: a file is damaged; 3: one is missing.\n"
         "Example:\n  opaline verify scene.opal");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

@@ -339,11 +339,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
             return std::move(status).error();
         }
     }
-    result.asset.provenance = make_provenance(
-        scene, {result.knobs, result.plan, result.volume_plan, result.error,
-                result.model_error ? &*result.model_error : nullptr,
-                result.volume_error ? &*result.volume_error : nullptr,
-                result.layer_error ? &*result.layer_error : nullptr, result.asset.clouds.records});
+    result.asset.provenance = make_provenance(scene, result);
     result.seconds_total = seconds_since(start);
     return result;
 }

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "bake/pipeline/pipeline.h"
 #include "bake/transport/embree_scene.h"
 
 namespace opaline::bake {
@@ -31,16 +32,16 @@ Json knobs_json(const Knobs& knobs) {
 
 namespace {
 
-Json bounds_json(const MeasuredError& error) {
+template <class Measured>
+Json bounds_json(const Measured& error) {
     return {{"rms_relative", error.rms_relative}, {"ci95", {error.ci95[0], error.ci95[1]}}};
 }
 
 }  // namespace
 
 Json error_json(const ErrorReport& error) {
-    Json json = {{"rms_relative", error.rms_relative},
-                 {"ci95", {error.ci95[0], error.ci95[1]}},
-                 {"p95_relative", error.p95_relative},
+    Json json = bounds_json(error);
+    json.update({{"p95_relative", error.p95_relative},
                  {"max_relative", error.max_relative},
                  {"receivers_checked", error.receivers_checked},
                  {"points_between_checked", error.points_between_checked},
@@ -49,7 +50,7 @@ Json error_json(const ErrorReport& error) {
                  {"between", bounds_json(error.between)},
                  {"not_measured", error.not_measured},
                  {"by_effect", Json::object()},
-                 {"by_light", Json::object()}};
+                 {"by_light", Json::object()}});
     for (const ErrorReport::Part& effect : error.by_effect) {
         json["by_effect"][effect.name] = effect.rms_relative;
     }
@@ -60,30 +61,27 @@ Json error_json(const ErrorReport& error) {
 }
 
 Json model_error_json(const ModelErrorReport& error) {
-    Json json = {{"rms_relative", error.rms_relative},
-                 {"ci95", {error.ci95[0], error.ci95[1]}},
-                 {"bias", error.bias},
+    Json json = bounds_json(error);
+    json.update({{"bias", error.bias},
                  {"missing", error.missing},
                  {"receivers_checked", error.receivers_checked},
                  {"samples", error.samples},
                  {"reference", error.reference},
                  {"by_light", Json::object()},
-                 {"left_out", error.left_out}};
+                 {"left_out", error.left_out}});
     if (const auto& mirrored = error.mirrored) {
-        json["mirrored"] = {{"rms_relative", mirrored->rms_relative},
-                            {"ci95", {mirrored->ci95[0], mirrored->ci95[1]}},
-                            {"bias", mirrored->bias},
-                            {"receivers_checked", mirrored->receivers_checked}};
+        json["mirrored"] = bounds_json(*mirrored);
+        json["mirrored"].update(
+            {{"bias", mirrored->bias}, {"receivers_checked", mirrored->receivers_checked}});
     }
     if (const auto& suns = error.suns) {
-        json["suns"] = {{"rms_relative", suns->rms_relative},
-                        {"ci95", {suns->ci95[0], suns->ci95[1]}},
-                        {"bias", suns->bias},
-                        {"noise", suns->noise},
-                        {"degrees", ModelErrorReport::Suns::degrees},
-                        {"suns", suns->suns},
-                        {"receivers_checked", suns->receivers_checked},
-                        {"samples", suns->samples}};
+        json["suns"] = bounds_json(*suns);
+        json["suns"].update({{"bias", suns->bias},
+                             {"noise", suns->noise},
+                             {"degrees", ModelErrorReport::Suns::degrees},
+                             {"suns", suns->suns},
+                             {"receivers_checked", suns->receivers_checked},
+                             {"samples", suns->samples}});
     }
     for (const ModelErrorReport::Part& light : error.by_light) {
         json["by_light"][light.name] = {{"rms_relative", light.rms_relative},
@@ -137,8 +135,14 @@ Json layer_json(const formats::LayerRecord& record) {
 
 }  // namespace
 
-std::string make_provenance(const formats::Scene& scene, const BakeRecord& record) {
-    const Knobs& knobs = record.knobs;
+void add_other_errors(const BakeResult& result, Json& json) {
+    if (result.model_error) json["model_error"] = model_error_json(*result.model_error);
+    if (result.volume_error) json["volume_error"] = volume_error_json(*result.volume_error);
+    if (result.layer_error) json["layer_error"] = layer_error_json(*result.layer_error);
+}
+
+std::string make_provenance(const formats::Scene& scene, const BakeResult& result) {
+    const Knobs& knobs = result.knobs;
     Json root;
     root["generator"] = std::string("Opaline ") + OPALINE_VERSION;
     root["ray_tracer"] = EmbreeScene::description();
@@ -154,8 +158,8 @@ std::string make_provenance(const formats::Scene& scene, const BakeRecord& recor
     }
     root["knobs"] = knobs_json(knobs);
     root["plan"] = Json::array();
-    for (const auto& plan : {record.plan, record.volume_plan}) {
-        for (const PlanEntry& entry : plan) {
+    for (const auto* plan : {&result.plan, &result.volume_plan}) {
+        for (const PlanEntry& entry : *plan) {
             root["plan"].push_back({{"effect", entry.name},
                                     {"subject", entry.subject.name},
                                     {"decision", entry.on ? "on" : "off"},
@@ -163,18 +167,10 @@ std::string make_provenance(const formats::Scene& scene, const BakeRecord& recor
                                     {"bound", entry.bound}});
         }
     }
-    root["error"] = error_json(record.error);
+    root["error"] = error_json(result.error);
     root["error"]["model_estimate"] = knobs.model_error;
-    if (record.model_error != nullptr) {
-        root["model_error"] = model_error_json(*record.model_error);
-    }
-    if (record.volume_error != nullptr) {
-        root["volume_error"] = volume_error_json(*record.volume_error);
-    }
-    if (record.layer_error != nullptr) {
-        root["layer_error"] = layer_error_json(*record.layer_error);
-    }
-    for (const formats::LayerRecord& layer : record.layers) {
+    add_other_errors(result, root);
+    for (const formats::LayerRecord& layer : result.asset.clouds.records) {
         root["layers"].push_back(layer_json(layer));
     }
     // Names come from the user's file: bytes that are not UTF-8 must not stop the bake.

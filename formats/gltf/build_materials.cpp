@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "formats/gltf/add_emission.h"
+#include "formats/gltf/add_textures.h"
 #include "formats/gltf/clamp_factor.h"
 #include "formats/gltf/document.h"
 #include "formats/gltf/load_texture.h"
@@ -15,33 +15,10 @@
 #include "formats/gltf/map_medium.h"
 #include "formats/gltf/map_sheet.h"
 #include "formats/gltf/map_specular_glossiness.h"
-#include "formats/gltf/share_coordinates.h"
 #include "formats/scene.h"
 
 namespace opaline::formats::gltf {
 namespace {
-
-// Material::normal_image with its scale: `normalTexture`. Comes after the material's other
-// textures, which decide on its coordinates: one that is mapped otherwise is left out. `remarks`
-// gets one sentence for each property that differs from the file; `where` names the material.
-void add_normal_map(const MaterialSource& source, const std::string& where, TextureLoader& loader,
-                    Material& material, std::vector<std::string>& remarks) {
-    constexpr double kMostScale = 1e3;  // far steeper than any surface
-    const TextureUse& use = source.normal_texture;
-    if (use.texture == kNone) return;
-    if (!share_coordinates(source, use, material)) {
-        remarks.emplace_back(
-            "normalTexture is mapped otherwise than the material's other textures: it is not used "
-            "(give all the same texCoord and KHR_texture_transform)");
-        return;
-    }
-    const LoadedTexture loaded = loader.load(use.texture, where);
-    material.normal_image = loaded.image;
-    material.normal_wrap_u = loaded.wrap_u;
-    material.normal_wrap_v = loaded.wrap_v;
-    material.normal_scale = static_cast<float>(clamp_factor(
-        source.normal_scale, -kMostScale, kMostScale, "the scale of normalTexture", remarks));
-}
 
 /// The meaning of an extension that is not simulated.
 std::string unsimulated_extension(const std::string& name) {
@@ -123,71 +100,6 @@ Material convert(const MaterialSource& source, const std::string& where, Report&
     return material;
 }
 
-/// Both textures of a material; a primitive has one set of coordinates for them, the base colour's.
-void add_textures(const MaterialSource& source, const std::string& where, TextureLoader& loader,
-                  Material& material, std::vector<std::string>& remarks) {
-    const TextureUse& color = source.base_color_texture;
-    if (color.texture != kNone) {
-        const LoadedTexture loaded = loader.load(color.texture, where);
-        material.base_color_image = loaded.image;
-        material.base_color_texcoord = color.texcoord;
-        material.base_color_uv_transform = color.transform;
-        material.wrap_u = loaded.wrap_u;
-        material.wrap_v = loaded.wrap_v;
-    }
-    const TextureUse& gloss = source.metallic_roughness_texture;
-    if (gloss.texture == kNone || material.medium || material.gloss.is_diffuse()) return;
-    if (color.texture == kNone) {
-        material.base_color_texcoord = gloss.texcoord;
-        material.base_color_uv_transform = gloss.transform;
-    } else if (gloss.texcoord != color.texcoord || gloss.transform != color.transform) {
-        remarks.push_back(
-            "metallicRoughnessTexture is mapped otherwise than baseColorTexture: its mean "
-            "is used (give both the same texCoord and KHR_texture_transform)");
-        if (const auto image = loader.decode(gloss.texture, where)) {
-            apply_mean(*image, material.gloss);
-        }
-        return;
-    }
-    const LoadedTexture loaded = loader.load(gloss.texture, where);
-    material.gloss.image = loaded.image;
-    material.gloss.wrap_u = loaded.wrap_u;
-    material.gloss.wrap_v = loaded.wrap_v;
-}
-
-/// Scatter textures make a medium vary inside; they share the material's coordinates.
-void add_scatter_textures(const MaterialSource& source, const std::string& where,
-                          TextureLoader& loader, Material& material,
-                          std::vector<std::string>& remarks) {
-    const TranslucencySource& inside = source.translucency;
-    bool is_mapped = source.base_color_texture.texture != kNone;
-    const auto add = [&](const TextureUse& use, const char* name, InnerTexture& to) {
-        if (use.texture == kNone) return;
-        if (!is_mapped) {
-            material.base_color_texcoord = use.texcoord;
-            material.base_color_uv_transform = use.transform;
-            is_mapped = true;
-        } else if (use.texcoord != material.base_color_texcoord ||
-                   use.transform != material.base_color_uv_transform) {
-            remarks.push_back(std::string(name) +
-                              " is mapped otherwise than the material's other textures: the factor "
-                              "is used alone (give all the same texCoord and "
-                              "KHR_texture_transform)");
-            return;
-        }
-        const LoadedTexture loaded = loader.load_inner(use.texture, where);
-        to = {loaded.image, loaded.wrap_u, loaded.wrap_v};
-    };
-    Variation variation;
-    add(inside.multiscatter_color_texture, "multiscatterColorTexture", variation.color);
-    add(inside.scatter_strength_texture, "scatterStrengthTexture", variation.strength);
-    if (variation.color.image != kNone || variation.strength.image != kNone) {
-        // Of the predecessor, the albedo is that of g = 0 (map_medium.h).
-        variation.g = inside.has_scatter ? material.medium->phase.g : 0.0f;
-        material.medium->variation = variation;
-    }
-}
-
 void add_coverage(const MaterialSource& source, Material& material,
                   std::vector<std::string>& remarks) {
     if (source.alpha_mode == "OPAQUE") return;
@@ -263,11 +175,6 @@ void build_materials(const Document& document, const std::vector<MeshInstance>& 
             material.is_unstated_metal =
                 !source.translucency.states_reflection && !source.translucency.is_diffuse;
             add_textures(source, where, loader, material, remarks);
-            if (material.medium) {
-                add_scatter_textures(source, where, loader, material, remarks);
-            }
-            add_emission(source, where, loader, material, remarks);
-            add_normal_map(source, where, loader, material, remarks);
             add_coverage(source, material, remarks);
             for (const std::string& fault : unsimulated(source, material)) {
                 lost[fault].push_back(where);

@@ -12,6 +12,7 @@
 #define TINYGLTF_NO_EXTERNAL_IMAGE
 #include <tiny_gltf.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <glm/gtc/type_ptr.hpp>
@@ -21,7 +22,6 @@
 #include "formats/gltf/instances.h"
 #include "formats/gltf/read_lights.h"
 #include "formats/gltf/read_material.h"
-#include "formats/gltf/read_skins.h"
 
 namespace opaline::formats::gltf {
 
@@ -180,6 +180,35 @@ void for_each_in(const Json& root, const char* key, const char* kind, Report& re
             read(NamedObject{entry, label(kind, i, name_in(entry)), report});
         }
     }
+}
+
+bool is_index(const Json& value) {
+    return value.is_number_unsigned() && value.get<std::uint64_t>() < kNone;
+}
+
+std::vector<Skin> read_skins(const Json& root, Report& report) {
+    std::vector<Skin> skins;
+    const Json* found = find_member(root, "skins");
+    if (!found) return skins;
+    for (const Json& entry : *found) {
+        const std::string where = "skin " + std::to_string(skins.size());
+        Skin& skin = skins.emplace_back();
+        const Json* joints = find_member(entry, "joints");
+        if (!joints || !joints->is_array() || joints->empty() ||
+            !std::all_of(joints->begin(), joints->end(), is_index)) {
+            report.error(where, "joints is not a list of nodes");
+            continue;
+        }
+        skin.joints = joints->get<std::vector<std::uint32_t>>();
+        if (const Json* bind = find_member(entry, "inverseBindMatrices")) {
+            if (is_index(*bind)) {
+                skin.inverse_bind_matrices = bind->get<std::uint32_t>();
+            } else {
+                report.error(where, "inverseBindMatrices is not an accessor");
+            }
+        }
+    }
+    return skins;
 }
 
 std::vector<ImageSource> read_images(const Json& root, Report& report) {

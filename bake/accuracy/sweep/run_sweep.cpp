@@ -286,12 +286,11 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     SweepTruths truths;
     if (has_receivers(scene)) {
         auto found = trace_truths(scene, sweep.view.model,
-                                  {.seconds = kShare * options.seconds,
-                                   .seed = options.bake.seed,
+                                  {.seed = options.bake.seed,
                                    .simulated = held_light(effects, result.plan),
                                    .lit_by_volumes = lights_surfaces(result.volume_plan),
                                    .volumes_see_surfaces = sees_surfaces(result.volume_plan)},
-                                  sweep.left(), context);
+                                  kShare * options.seconds, sweep.left(), context);
         if (!found) return std::move(found).error();
         truths = std::move(*found);
         result.reference = std::move(truths.reference);

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "bake/accuracy/model_truth.h"
 #include "bake/accuracy/sweep/reference_ladder.h"
-#include "bake/accuracy/sweep/trace_for.h"
 
 namespace opaline::bake {
 
@@ -19,10 +19,11 @@ struct SweepTruths {
     std::vector<LeftOut> left_out;
 };
 
-/// Each of both takes about `options.seconds`, and is stopped after half of the `left` seconds that
-/// are left by then. A truth that the context stops is left out as well. Errors: resource.
+/// `options`: of the path tracing, but for its amount. Each of both takes about `seconds`, and is
+/// stopped after half of the `left` seconds that are left by then. A truth that the context stops
+/// is left out as well. Errors: resource.
 formats::Result<SweepTruths> trace_truths(const formats::Scene& scene, const ModelProbes& probes,
-                                          const TraceForOptions& options, double left,
-                                          const Context& context);
+                                          const ModelCheckOptions& options, double seconds,
+                                          double left, const Context& context);
 
 }  // namespace opaline::bake

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -23,7 +24,7 @@ constexpr std::chrono::milliseconds kRest{120};
 struct OpenFile {
     std::string path;
     std::uint64_t version = 0;
-    std::optional<ShownFile> shown;
+    std::unique_ptr<ShownFile> shown;
 };
 
 // Opens it unless it is. Where that fails, what was open stays, and is tried again the next time.
@@ -37,7 +38,7 @@ formats::Status keep_open(OpenFile& file, const std::string& path, std::uint64_t
     if (!opened) return opened.error();
     file.path = path;
     file.version = version;
-    file.shown.emplace(std::move(*opened));
+    file.shown = std::move(*opened);
     return formats::ok_status();
 }
 

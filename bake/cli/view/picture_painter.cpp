@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "bake/cli/messages.h"
+
 namespace opaline::cli {
 namespace {
 
@@ -70,13 +72,14 @@ void main() {
 }
 )glsl";
 
-formats::Error refuse_gl(const char* doing, std::string log) {
-    return formats::make_error(formats::ErrorKind::resource, "", "window",
+// Before anything else was made: a program that ends leaves nothing to delete.
+[[noreturn]] void refuse_gl(const char* doing, std::string log) {
+    refuse(formats::make_error(formats::ErrorKind::resource, "", "window",
                                std::string(doing) + ": " + std::move(log),
-                               "install a driver with OpenGL 3.3, or use `opaline render`");
+                               "install a driver with OpenGL 3.3, or use `opaline render`"));
 }
 
-formats::Result<GLuint> compile_stage(GLenum stage, const char* text) {
+GLuint compile_stage(GLenum stage, const char* text) {
     const GLuint shader = glCreateShader(stage);
     glShaderSource(shader, 1, &text, nullptr);
     glCompileShader(shader);
@@ -87,29 +90,21 @@ formats::Result<GLuint> compile_stage(GLenum stage, const char* text) {
     GLsizei written = 0;
     glGetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), &written, log.data());
     log.resize(static_cast<std::size_t>(written));
-    glDeleteShader(shader);
-    return refuse_gl("compiling the tone mapper", std::move(log));
+    refuse_gl("compiling the tone mapper", std::move(log));
 }
 
-formats::Result<GLuint> link_program() {
-    const auto vertex = compile_stage(GL_VERTEX_SHADER, kVertexText);
-    if (!vertex) return vertex.error();
-    const auto fragment = compile_stage(GL_FRAGMENT_SHADER, kFragmentText);
-    if (!fragment) {
-        glDeleteShader(*vertex);
-        return fragment.error();
-    }
+GLuint link_program() {
     const GLuint program = glCreateProgram();
-    for (const GLuint shader : {*vertex, *fragment}) {
+    for (const GLuint shader : {compile_stage(GL_VERTEX_SHADER, kVertexText),
+                                compile_stage(GL_FRAGMENT_SHADER, kFragmentText)}) {
         glAttachShader(program, shader);
         glDeleteShader(shader);
     }
     glLinkProgram(program);
     GLint is_linked = 0;
     glGetProgramiv(program, GL_LINK_STATUS, &is_linked);
-    if (is_linked != 0) return program;
-    glDeleteProgram(program);
-    return refuse_gl("linking the tone mapper", "failed");
+    if (is_linked == 0) refuse_gl("linking the tone mapper", "failed");
+    return program;
 }
 
 void set_filter(GLenum filter) {
@@ -129,36 +124,14 @@ void copy_frame(GLuint from, GLuint to, std::uint32_t width, std::uint32_t heigh
 
 }  // namespace
 
-formats::Result<PicturePainter> PicturePainter::create() {
-    const auto program = link_program();
-    if (!program) return program.error();
-    PicturePainter painter;
-    painter.program_ = *program;
-    glGenVertexArrays(1, &painter.vertex_array_);
-    glGenFramebuffers(2, painter.frame_);
-    glGenTextures(2, painter.image_);
-    glGenTextures(2, painter.picture_);
-    return painter;
-}
-
-PicturePainter::PicturePainter(PicturePainter&& other) noexcept
-    : program_(std::exchange(other.program_, 0)),
-      vertex_array_(std::exchange(other.vertex_array_, 0)),
-      width_(other.width_),
-      height_(other.height_),
-      mapped_(other.mapped_) {
-    for (int which = 0; which < 2; ++which) {
-        frame_[which] = std::exchange(other.frame_[which], 0);
-        image_[which] = std::exchange(other.image_[which], 0);
-        picture_[which] = std::exchange(other.picture_[which], 0);
-        is_there_[which] = other.is_there_[which];
-        picture_width_[which] = other.picture_width_[which];
-        picture_height_[which] = other.picture_height_[which];
-    }
+PicturePainter::PicturePainter() : program_(link_program()) {
+    glGenVertexArrays(1, &vertex_array_);
+    glGenFramebuffers(2, frame_);
+    glGenTextures(2, image_);
+    glGenTextures(2, picture_);
 }
 
 PicturePainter::~PicturePainter() {
-    if (program_ == 0) return;
     glDeleteProgram(program_);
     glDeleteVertexArrays(1, &vertex_array_);
     glDeleteFramebuffers(2, frame_);

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "formats/opal/result.h"
 #include "runtime/picture/picture.h"
 #include "runtime/picture/tone_map.h"
 
@@ -26,10 +25,10 @@ struct PaintLook {
 /// which then goes to the window: so what is read back does not depend on what covers the window.
 class PicturePainter {
   public:
-    /// Errors: resource.
-    static formats::Result<PicturePainter> create();
-    PicturePainter(PicturePainter&& other) noexcept;
-    PicturePainter& operator=(PicturePainter&&) = delete;
+    /// Throws Refusal (messages.h): resource.
+    PicturePainter();
+    PicturePainter(const PicturePainter&) = delete;
+    PicturePainter& operator=(const PicturePainter&) = delete;
     ~PicturePainter();
 
     /// Picture 0, or 1 beside it; an empty one is none.
@@ -43,7 +42,6 @@ class PicturePainter {
     void show() const;
 
   private:
-    PicturePainter() = default;
     void resize(std::uint32_t width, std::uint32_t height);
     void map_tones(const PaintLook& look) const;
     static constexpr int kMapped = 0, kImage = 1;  ///< pictures alone; with what is drawn on them

@@ -15,89 +15,68 @@ namespace {
 using Words = std::span<const std::string>;
 using What = decltype(ScriptStep::what);
 
-What change(StateChange what) {
-    return {std::move(what)};
-}
-
 constexpr double kMostDegrees = 1e6;
 
-std::optional<What> parse_orbit(Words words) {
-    const auto by = numbers_in(words, 2, -kMostDegrees, kMostDegrees);
-    if (!by) return {};
-    return change([v = *by](ViewState& state) {
-        state.viewpoint = orbit_level(*state.viewpoint, v[0], v[1]);
-    });
+using Parse = decltype(ScriptCommand::parse);
+
+// A command of `count` numbers, which `apply` gets.
+Parse numbers(std::size_t count, double least, double most,
+              void (*apply)(ViewState& state, const std::vector<double>& v)) {
+    return [=](Words words) -> std::optional<What> {
+        const auto values = numbers_in(words, count, least, most);
+        if (!values) return {};
+        return StateChange([apply, v = *values](ViewState& state) { apply(state, v); });
+    };
 }
 
-std::optional<What> parse_turn(Words words) {
-    const auto by = numbers_in(words, 4, -10, 10);
-    if (!by) return {};
-    return change([v = *by](ViewState& state) {
-        state.viewpoint = turn_ball(*state.viewpoint, {v[0], v[1]}, {v[2], v[3]});
-    });
+// Of one word.
+Parse word(void (*apply)(ViewState& state, const std::string& word)) {
+    return [=](Words words) -> std::optional<What> {
+        if (words.size() != 1) return {};
+        return StateChange([apply, text = words[0]](ViewState& state) { apply(state, text); });
+    };
 }
 
-std::optional<What> parse_pan(Words words) {
-    const auto by = numbers_in(words, 2, -1e3, 1e3);
-    if (!by) return {};
-    return change([v = *by](ViewState& state) {
-        state.viewpoint = pan(*state.viewpoint, state.fov, v[0], v[1]);
-    });
+// Of nothing else.
+Parse alone(What what) {
+    return [=](Words words) { return words.empty() ? std::optional(what) : std::nullopt; };
 }
 
-std::optional<What> parse_zoom(Words words) {
-    const auto by = numbers_in(words, 1, 1e-6, 1e6);
-    if (!by) return {};
-    return change(
-        [v = *by](ViewState& state) { state.viewpoint = zoom(*state.viewpoint, 1 / v[0]); });
+// The word `special`, or as `otherwise` has it.
+Parse either(const char* special, void (*apply)(ViewState& state), Parse otherwise) {
+    return [=](Words words) -> std::optional<What> {
+        if (words.size() == 1 && words[0] == special) return StateChange(apply);
+        return otherwise(words);
+    };
 }
 
-std::optional<What> parse_level(Words words) {
-    if (!words.empty()) return {};
-    return change([](ViewState& state) { state.viewpoint = level(*state.viewpoint); });
+// Of words for which `apply` finds a change of a state.
+Parse where_possible(bool (*apply)(ViewState& state, const std::string& word)) {
+    return [=](Words words) -> std::optional<What> {
+        ViewState trial;
+        if (words.size() != 1 || !apply(trial, words[0])) return {};
+        return StateChange([apply, text = words[0]](ViewState& state) { apply(state, text); });
+    };
 }
 
-std::optional<What> parse_frame(Words words) {
-    if (!words.empty()) return {};
-    return change([](ViewState& state) { state.viewpoint.reset(); });
+Parse png(bool with_panels) {
+    return [=](Words words) -> std::optional<What> {
+        if (words.size() != 1 || std::filesystem::path(words[0]).extension() != ".png") return {};
+        return Screenshot{words[0], with_panels};
+    };
 }
 
-std::optional<What> parse_rotate_light(Words words) {
-    const auto to = numbers_in(words, 1, -kMostDegrees, kMostDegrees);
-    if (!to) return {};
-    return change([v = *to](ViewState& state) { rotate_light_to(state, v[0]); });
+bool set_terms(ViewState& state, const std::string& names) {
+    const auto terms = formats::parse_terms(names, formats::TermSet::baked, "terms");
+    if (terms) state.terms = *terms;
+    return terms.has_value();
 }
 
-std::optional<What> parse_exposure(Words words) {
-    if (words.size() == 1 && words[0] == "auto") {
-        return change([](ViewState& state) { state.exposure.reset(); });
-    }
-    const auto to = numbers_in(words, 1, -64, 64);
-    if (!to) return {};
-    return change([v = *to](ViewState& state) { state.exposure = static_cast<float>(v[0]); });
-}
-
-std::optional<What> parse_tone_map(Words words) {
-    if (words.size() != 1 || (words[0] != "neutral" && words[0] != "none")) return {};
-    const auto map = words[0] == "none" ? runtime::ToneMap::none : runtime::ToneMap::neutral;
-    return change([map](ViewState& state) { state.tone_map = map; });
-}
-
-std::optional<What> parse_terms_word(Words words) {
-    if (words.size() != 1) return {};
-    const auto terms = formats::parse_terms(words[0], formats::TermSet::baked, "terms");
-    if (!terms) return {};
-    return change([terms = *terms](ViewState& state) { state.terms = terms; });
-}
-
-std::optional<What> parse_toggle(Words words) {
-    if (words.size() != 1) return {};
-    if (words[0] == "panels") {
-        return change([](ViewState& state) { state.panels = !state.panels; });
-    }
-    const auto term = formats::parse_terms(words[0], formats::TermSet::baked, "toggle");
-    if (!term || words[0] == "all") return {};
-    return change([term = *term](ViewState& state) { toggle_term(state, term); });
+bool toggle(ViewState& state, const std::string& name) {
+    const auto term = formats::parse_terms(name, formats::TermSet::baked, "toggle");
+    if (!term || name == "all") return false;
+    toggle_term(state, *term);
+    return true;
 }
 
 // NAME=R,G,B or NAME=V.
@@ -121,122 +100,94 @@ std::optional<What> parse_emitter(Words words) {
     return What{EmitterChange{words[0].substr(0, equals), {band(0), band(1), band(2)}}};
 }
 
-std::optional<What> parse_time(Words words) {
-    const auto to = numbers_in(words, 1, -1e9, 1e9);
-    if (!to) return {};
-    return change([v = *to](ViewState& state) { state.time = v[0]; });
-}
-
 std::optional<What> parse_coefficients(Words words) {
-    if (words.size() == 1 && words[0] == "all") {
-        return change([](ViewState& state) { state.coefficients.reset(); });
-    }
     const auto to = numbers_in(words, 1, 6, 1 << 20);
     if (!to || (*to)[0] != std::floor((*to)[0])) return {};
-    return change(
+    return StateChange(
         [v = *to](ViewState& state) { state.coefficients = static_cast<std::uint32_t>(v[0]); });
-}
-
-std::optional<What> parse_load(Words words) {
-    if (words.size() != 1) return {};
-    return change([path = words[0]](ViewState& state) { show_file(state, path); });
-}
-
-std::optional<What> parse_beside(Words words) {
-    if (words.size() != 1) return {};
-    return change(
-        [path = words[0]](ViewState& state) { state.other = path == "none" ? "" : path; });
-}
-
-std::optional<What> parse_split(Words words) {
-    const auto to = numbers_in(words, 1, 0, 1);
-    if (!to) return {};
-    return change([v = *to](ViewState& state) { state.split = static_cast<float>(v[0]); });
-}
-
-std::optional<What> parse_difference(Words words) {
-    const auto to = numbers_in(words, 1, 0, 1e6);
-    if (!to) return {};
-    return change(
-        [v = *to](ViewState& state) { state.difference_gain = static_cast<float>(v[0]); });
 }
 
 std::optional<What> parse_receiver_errors(Words words) {
     const auto to = numbers_in(words, 1, 0, 10);
     if (!to || ((*to)[0] > 0 && (*to)[0] < 1e-6)) return {};
-    return change([v = *to](ViewState& state) { state.error_white = static_cast<float>(v[0]); });
-}
-
-std::optional<What> parse_light(Words words) {
-    if (words.size() != 1) return {};
-    return change([light = words[0]](ViewState& state) { state.light = light; });
-}
-
-std::optional<What> parse_drop(Words words) {
-    ViewState trial;
-    if (words.size() != 1 || !drop_file(trial, words[0], 0)) return {};
-    return change([path = words[0]](ViewState& state) { (void)drop_file(state, path, 0); });
+    return StateChange(
+        [v = *to](ViewState& state) { state.error_white = static_cast<float>(v[0]); });
 }
 
 std::optional<What> parse_wait_frames(Words words) {
     const auto count = numbers_in(words, 1, 1, 1e6);
     if (!count) return {};
-    return What{WaitFrames{static_cast<std::size_t>((*count)[0])}};
+    return WaitFrames{static_cast<std::size_t>((*count)[0])};
 }
 
-std::optional<What> parse_wait_reload(Words words) {
-    return words.empty() ? std::optional<What>(WaitReload{}) : std::nullopt;
-}
+using State = ViewState;
+using Values = std::vector<double>;
 
-bool is_png(Words words) {
-    return words.size() == 1 && std::filesystem::path(words[0]).extension() == ".png";
-}
-
-std::optional<What> parse_screenshot(Words words) {
-    return is_png(words) ? std::optional<What>(Screenshot{words[0], false}) : std::nullopt;
-}
-
-std::optional<What> parse_photograph(Words words) {
-    return is_png(words) ? std::optional<What>(Screenshot{words[0], true}) : std::nullopt;
-}
-
-std::optional<What> parse_quit(Words words) {
-    return words.empty() ? std::optional<What>(Quit{}) : std::nullopt;
-}
-
-constexpr ScriptCommand kCommands[] = {
+const ScriptCommand kCommands[] = {
     {"orbit", "AZ EL", "move the camera around its target, to the right and up [degrees]",
-     parse_orbit},
+     numbers(
+         2, -kMostDegrees, kMostDegrees,
+         [](State& s, const Values& v) { s.viewpoint = orbit_level(*s.viewpoint, v[0], v[1]); })},
     {"turn", "X0 Y0 X1 Y1", "arcball: drag the scene; 0 is the middle, 1 half the shorter side",
-     parse_turn},
-    {"level", "", "make the horizon level again", parse_level},
-    {"pan", "X Y", "move the scene, to the right and up [heights of the picture]", parse_pan},
-    {"zoom", "F", "go F times nearer to the target", parse_zoom},
-    {"frame", "", "frame everything again", parse_frame},
-    {"light", "ENV", "another light", parse_light},
-    {"rotate-light", "DEG", "turn the light to this angle about +Y", parse_rotate_light},
+     numbers(4, -10, 10,
+             [](State& s, const Values& v) {
+                 s.viewpoint = turn_ball(*s.viewpoint, {v[0], v[1]}, {v[2], v[3]});
+             })},
+    {"level", "", "make the horizon level again",
+     alone(StateChange([](State& s) { s.viewpoint = level(*s.viewpoint); }))},
+    {"pan", "X Y", "move the scene, to the right and up [heights of the picture]",
+     numbers(
+         2, -1e3, 1e3,
+         [](State& s, const Values& v) { s.viewpoint = pan(*s.viewpoint, s.fov, v[0], v[1]); })},
+    {"zoom", "F", "go F times nearer to the target",
+     numbers(1, 1e-6, 1e6,
+             [](State& s, const Values& v) { s.viewpoint = zoom(*s.viewpoint, 1 / v[0]); })},
+    {"frame", "", "frame everything again",
+     alone(StateChange([](State& s) { s.viewpoint.reset(); }))},
+    {"light", "ENV", "another light", word([](State& s, const std::string& w) { s.light = w; })},
+    {"rotate-light", "DEG", "turn the light to this angle about +Y",
+     numbers(1, -kMostDegrees, kMostDegrees,
+             [](State& s, const Values& v) { rotate_light_to(s, v[0]); })},
     {"exposure", "EV|auto", "brighter by a factor of 2^EV; auto: as the picture asks for",
-     parse_exposure},
-    {"tone-map", "neutral|none", "as `render --tone-map`", parse_tone_map},
-    {"terms", "all|LIST", "components to show, as `render --terms`", parse_terms_word},
-    {"toggle", "TERM|panels", "show a component, or the controls, or leave them out", parse_toggle},
-    {"coefficients", "M|all", "use at most M coefficients of a row", parse_coefficients},
+     either(
+         "auto", [](State& s) { s.exposure.reset(); },
+         numbers(1, -64, 64,
+                 [](State& s, const Values& v) { s.exposure = static_cast<float>(v[0]); }))},
+    {"tone-map", "neutral|none", "as `render --tone-map`",
+     either(
+         "neutral", [](State& s) { s.tone_map = runtime::ToneMap::neutral; },
+         either(
+             "none", [](State& s) { s.tone_map = runtime::ToneMap::none; },
+             [](Words) { return std::optional<What>(); }))},
+    {"terms", "all|LIST", "components to show, as `render --terms`", where_possible(set_terms)},
+    {"toggle", "TERM|panels", "show a component, or the controls, or leave them out",
+     either(
+         "panels", [](State& s) { s.panels = !s.panels; }, where_possible(toggle))},
+    {"coefficients", "M|all", "use at most M coefficients of a row",
+     either(
+         "all", [](State& s) { s.coefficients.reset(); }, parse_coefficients)},
     {"receiver-errors", "E", "errors by receiver in place of light, as `render`; 0: light",
      parse_receiver_errors},
     {"emitter", "NAME=R,G,B", "multiply the light of an emitter", parse_emitter},
-    {"time", "S", "move cloud layers by their wind times S [s]", parse_time},
-    {"load", "FILE.opal", "another file", parse_load},
-    {"beside", "FILE.opal|none", "a second file, right of the split", parse_beside},
-    {"split", "X", "share of the width where the second file begins", parse_split},
+    {"time", "S", "move cloud layers by their wind times S [s]",
+     numbers(1, -1e9, 1e9, [](State& s, const Values& v) { s.time = v[0]; })},
+    {"load", "FILE.opal", "another file", word(show_file)},
+    {"beside", "FILE.opal|none", "a second file, right of the split",
+     word([](State& s, const std::string& w) { s.other = w == "none" ? "" : w; })},
+    {"split", "X", "share of the width where the second file begins",
+     numbers(1, 0, 1, [](State& s, const Values& v) { s.split = static_cast<float>(v[0]); })},
     {"difference", "GAIN", "there, how far both are apart instead, times GAIN; 0: the second file",
-     parse_difference},
-    {"drop", "FILE", "drop an .opal, .exr or .hdr file on the window", parse_drop},
+     numbers(1, 0, 1e6,
+             [](State& s, const Values& v) { s.difference_gain = static_cast<float>(v[0]); })},
+    {"drop", "FILE", "drop an .opal, .exr or .hdr file on the window",
+     where_possible([](State& s, const std::string& w) { return drop_file(s, w, 0).has_value(); })},
     {"wait-frames", "N", "show N frames of the window", parse_wait_frames},
-    {"wait-reload", "", "wait until a file changed on disk and was read again", parse_wait_reload},
+    {"wait-reload", "", "wait until a file changed on disk and was read again",
+     alone(WaitReload{})},
     {"screenshot", "FILE.png", "write the picture, and print the `render` that makes the same",
-     parse_screenshot},
-    {"photograph", "FILE.png", "write the whole window, controls included", parse_photograph},
-    {"quit", "", "close the window", parse_quit}};
+     png(false)},
+    {"photograph", "FILE.png", "write the whole window, controls included", png(true)},
+    {"quit", "", "close the window", alone(Quit{})}};
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,7 +15,8 @@ struct ScriptCommand {
     const char* arguments;  ///< as help texts have them
     const char* help;
     /// From the words behind the name; nothing: they are not what the command takes.
-    std::optional<decltype(ScriptStep::what)> (*parse)(std::span<const std::string> words);
+    std::function<std::optional<decltype(ScriptStep::what)>(std::span<const std::string> words)>
+        parse;
 };
 
 /// All of them, in the order of help texts.

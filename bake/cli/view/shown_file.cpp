@@ -2,20 +2,15 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 #include "bake/cli/draw_frames.h"
-#include "bake/cli/error_map.h"
-#include "bake/cli/inputs.h"
-#include "bake/cli/view/coefficient_error.h"
-#include "bake/encode/shorten_rows.h"
 #include "formats/opal/emitters.h"
-#include "runtime/distant_light.h"
-#include "runtime/gl/gl_renderer.h"
 #include "runtime/picture/auto_exposure.h"
+#include "runtime/shade.h"
 #include "runtime/specular.h"
 #include "runtime/terms.h"
 
@@ -75,250 +70,230 @@ FileFacts facts_of(const formats::AssetView& view) {
     return facts;
 }
 
+double squared_norm(formats::Rgb c) {
+    const double r = static_cast<double>(c.r), g = static_cast<double>(c.g),
+                 b = static_cast<double>(c.b);
+    return r * r + g * g + b * b;
+}
+
+// How far an asset with fewer coefficients is from the whole one under a light: root mean square of
+// the difference of outgoing radiance over that of the whole, of 4096 receivers at most, in equal
+// steps. 0 without any light. Precondition: the same receivers.
+double coefficient_error_of(const formats::AssetView& whole, const formats::AssetView& shortened,
+                            const runtime::PartLights& light, formats::TermSet terms) {
+    constexpr std::uint32_t kMost = 4096;
+    const std::uint32_t step = std::max(1u, (whole.receivers() + kMost - 1) / kMost);
+    runtime::ShadeOptions options;
+    options.terms = terms;
+    double difference = 0, sum = 0;
+    for (std::uint32_t receiver = 0; receiver < whole.receivers(); receiver += step) {
+        formats::Rgb all, few;
+        runtime::shade_range(whole, light, receiver, {&all, 1}, options);
+        runtime::shade_range(shortened, light, receiver, {&few, 1}, options);
+        difference += squared_norm(all + -1.0f * few);
+        sum += squared_norm(all);
+    }
+    return sum > 0 ? std::sqrt(difference / sum) : 0;
+}
+
 }  // namespace
 
-struct ShownFile::Parts {
-    explicit Parts(OpenedAsset opened, std::string from)
-        : asset(std::move(opened)),
-          path(std::move(from)),
-          facts(facts_of(asset.loaded.view)),
-          view(asset.loaded.view) {}
-
-    const formats::AssetView& whole() const { return asset.loaded.view; }
-    std::vector<formats::Rgb> emitter_colors(const ViewState& state) const;
-    formats::Status choose_rows(const ViewState& state);
-    formats::Status make_renderer(const formats::Environment& map, const LightWithLayers& layers);
-    PartVectors project(const LightWithLayers& layers, const OpenedLight& sky,
-                        runtime::MapSampling sampling);
-    formats::Status relight(const ViewState& state, const formats::Environment& map,
-                            runtime::MapSampling sampling);
-    formats::Status light_errors();
-
-    OpenedAsset asset;
-    std::string path;
-    FileFacts facts;
-    ViewSeconds seconds;
-    std::vector<float> receiver_errors;  ///< empty without any
-    bake::ShortRows short_rows;
-    ErrorMap error_map;
-    formats::AssetView view;  ///< with the coefficients that are shown, or the map of errors
-    std::optional<std::uint32_t> coefficients;
-    float error_white = 0;
-    std::optional<runtime::GlRenderer> renderer;
-    std::uint64_t light_version = 0;
-    std::optional<runtime::DistantLight> light;  ///< of that version, where there is no layer
-    std::optional<ViewState> lit_for;
-    runtime::MapSampling lit_by = runtime::MapSampling::full;
-    runtime::GlRenderOptions drawing;
-    std::optional<float> exposure;  ///< of the light shown
-    double error = 0;
-};
-
-std::vector<formats::Rgb> ShownFile::Parts::emitter_colors(const ViewState& state) const {
+std::vector<formats::Rgb> ShownFile::emitter_colors(const ViewState& state) const {
     std::vector<formats::Rgb> colors;
-    colors.reserve(facts.emitters.size());
-    for (const std::string& name : facts.emitters) {
+    colors.reserve(facts_.emitters.size());
+    for (const std::string& name : facts_.emitters) {
         colors.push_back(emitter_color(state, name));
     }
     return colors;
 }
 
-formats::Status ShownFile::Parts::choose_rows(const ViewState& state) {
-    if (state.coefficients == coefficients && state.error_white == error_white) {
+formats::Status ShownFile::choose_rows(const ViewState& state) {
+    if (state.coefficients == coefficients_ && state.error_white == error_white_) {
         return formats::ok_status();
     }
-    if (state.error_white > 0 && receiver_errors.empty()) return stored_errors(asset, path).error();
+    if (state.error_white > 0 && receiver_errors_.empty()) {
+        return stored_errors(asset_, path_).error();
+    }
     const auto start = ViewClock::now();
-    renderer.reset();
-    lit_for.reset();
-    view = whole();
-    short_rows = {};
-    error_map = {};
+    renderer_.reset();
+    lit_for_.reset();
+    view_ = whole();
+    short_rows_ = {};
+    error_map_ = {};
     if (state.error_white > 0) {
-        error_map = make_error_map(whole(), receiver_errors, state.error_white);
-        view = error_map.view_of(whole());
-    } else if (state.coefficients && *state.coefficients < facts.coefficients) {
+        error_map_ = make_error_map(whole(), receiver_errors_, state.error_white);
+        view_ = error_map_.view_of(whole());
+    } else if (state.coefficients && *state.coefficients < facts_.coefficients) {
         auto made = bake::shorten_rows(whole(), *state.coefficients);
         if (!made) return made.error();
-        short_rows = std::move(*made);
-        view = short_rows.view_of(whole());
+        short_rows_ = std::move(*made);
+        view_ = short_rows_.view_of(whole());
     }
-    coefficients = state.coefficients;
-    error_white = state.error_white;
-    seconds.load = seconds_since(start);
+    coefficients_ = state.coefficients;
+    error_white_ = state.error_white;
+    seconds_.load = seconds_since(start);
     return formats::ok_status();
 }
 
-formats::Status ShownFile::Parts::make_renderer(const formats::Environment& map,
-                                                const LightWithLayers& layers) {
-    const bool mirrors_layer = layers.parts && runtime::specular_needs(view).any();
-    if (renderer && !mirrors_layer) return formats::ok_status();
+formats::Status ShownFile::make_renderer(const formats::Environment& map,
+                                         const LightWithLayers& layers) {
+    const bool mirrors_layer = layers.parts && runtime::specular_needs(view_).any();
+    if (renderer_ && !mirrors_layer) return formats::ok_status();
     runtime::GlOptions upload;
     if (layers.parts) upload.mirrored = &layers.parts->mirrored();
-    renderer.reset();  // its memory first
-    auto made = runtime::GlRenderer::create(view, map, upload);
+    renderer_.reset();  // its memory first
+    auto made = runtime::GlRenderer::create(view_, map, upload);
     if (!made) return made.error();
-    renderer.emplace(std::move(*made));
-    const runtime::GlStats& stats = renderer->stats();
-    seconds.upload = stats.upload_seconds + stats.specular_seconds;
-    facts.device = stats.device;
+    renderer_.emplace(std::move(*made));
+    const runtime::GlStats& stats = renderer_->stats();
+    seconds_.upload = stats.upload_seconds + stats.specular_seconds;
+    facts_.device = stats.device;
     return formats::ok_status();
 }
 
 // As project_parts, but turns a light that stays instead of preparing its map anew.
-PartVectors ShownFile::Parts::project(const LightWithLayers& layers, const OpenedLight& sky,
-                                      runtime::MapSampling sampling) {
-    const bool has_rows = !view.primitives.empty() || !view.volumes.empty();
+PartVectors ShownFile::project(const LightWithLayers& layers, const OpenedLight& sky,
+                               runtime::MapSampling sampling) {
+    const bool has_rows = !view_.primitives.empty() || !view_.volumes.empty();
     if (layers.parts || !has_rows) {
-        return project_parts(layers, has_rows ? sky : OpenedLight{}, view.cubemap_size, 0);
+        return project_parts(layers, has_rows ? sky : OpenedLight{}, view_.cubemap_size, 0);
     }
-    if (!light) {
-        light.emplace(view.cubemap_size, runtime::SpecularNeeds{});
-        light->set_map(sky.environment, 0);
+    if (!light_) {
+        light_.emplace(view_.cubemap_size, runtime::SpecularNeeds{});
+        light_->set_map(sky.environment, 0);
         for (const formats::DistantDisc& disc : sky.environment.discs) {
-            light->add_sun(disc, 0);
+            light_->add_sun(disc, 0);
         }
     }
-    light->turn(sky.rotation, sampling, 0);
-    return {{}, {light->vector()}};
+    light_->turn(sky.rotation, sampling, 0);
+    return {{}, {light_->vector()}};
 }
 
-formats::Status ShownFile::Parts::relight(const ViewState& state, const formats::Environment& map,
-                                          runtime::MapSampling sampling) {
+formats::Status ShownFile::relight(const ViewState& state, const formats::Environment& map,
+                                   runtime::MapSampling sampling) {
     const auto start = ViewClock::now();
     const OpenedLight sky{
         map,
         runtime::rotation_about_y(static_cast<float>(state.rotate_light * std::numbers::pi / 180))};
-    const LightWithLayers layers = light_layers_of(view, sky, state.time, 0);
+    const LightWithLayers layers = light_layers_of(view_, sky, state.time, 0);
     const PartVectors vectors = project(layers, sky, sampling);
-    seconds.light = seconds_since(start);
+    seconds_.light = seconds_since(start);
     const std::vector<formats::Rgb> colors = emitter_colors(state);
-    const Shown shown = show_terms(state.terms, view, colors);
-    // A renderer that has shown a layer goes on to do so.
-    if (!view.clouds.empty() && shown.background != drawing.background) renderer.reset();
+    const Shown shown = show_terms(state.terms, view_, colors);
+    // A renderer_ that has shown a layer goes on to do so.
+    if (!view_.clouds.empty() && shown.background != drawing_.background) renderer_.reset();
     if (auto status = make_renderer(map, layers); !status) return status;
-    if (auto status = renderer->set_light(vectors.lights(), sky.rotation, shown.emitters);
+    if (auto status = renderer_->set_light(vectors.lights(), sky.rotation, shown.emitters);
         !status) {
         return status;
     }
     if (shown.background && layers.layers) {
-        if (auto status = renderer->set_layers(*layers.layers); !status) return status;
+        if (auto status = renderer_->set_layers(*layers.layers); !status) return status;
     }
-    seconds.dots = renderer->stats().dot_seconds;
-    facts.gpu_bytes = renderer->stats().gpu_bytes;
-    drawing.terms = shown.terms;
-    drawing.background = shown.background;
-    error = short_rows.primitives.empty()
-                ? 0
-                : coefficient_error_of(whole(), view, vectors.lights(), state.terms);
+    seconds_.dots = renderer_->stats().dot_seconds;
+    facts_.gpu_bytes = renderer_->stats().gpu_bytes;
+    drawing_.terms = shown.terms;
+    drawing_.background = shown.background;
+    error_ = short_rows_.primitives.empty()
+                 ? 0
+                 : coefficient_error_of(whole(), view_, vectors.lights(), state.terms);
     return formats::ok_status();
 }
 
-// The map of errors under its own light.
-formats::Status ShownFile::Parts::light_errors() {
+// The map of errors under its own light_.
+formats::Status ShownFile::light_errors() {
     const OpenedLight even = error_map_light();
     if (auto status = make_renderer(even.environment, {}); !status) return status;
-    const PartVectors vectors = project_parts({}, even, view.cubemap_size, 0);
-    if (auto status = renderer->set_light(vectors.lights(), even.rotation); !status) return status;
-    seconds.dots = renderer->stats().dot_seconds;
-    facts.gpu_bytes = renderer->stats().gpu_bytes;
-    drawing.terms = formats::TermSet::baked;
-    drawing.background = true;
-    error = 0;
+    const PartVectors vectors = project_parts({}, even, view_.cubemap_size, 0);
+    if (auto status = renderer_->set_light(vectors.lights(), even.rotation); !status) return status;
+    seconds_.dots = renderer_->stats().dot_seconds;
+    facts_.gpu_bytes = renderer_->stats().gpu_bytes;
+    drawing_.terms = formats::TermSet::baked;
+    drawing_.background = true;
+    error_ = 0;
     return formats::ok_status();
 }
 
-formats::Result<ShownFile> ShownFile::open(const std::string& path) {
+formats::Result<std::unique_ptr<ShownFile>> ShownFile::open(const std::string& path) {
     const auto start = ViewClock::now();
     auto asset = open_asset(path);
     if (!asset) return asset.error();
     auto errors = formats::read_receiver_errors(asset->file.bytes(), asset->loaded, path);
     if (!errors) return errors.error();
-    auto parts = std::make_unique<Parts>(std::move(*asset), path);
-    parts->receiver_errors = std::move(*errors);
-    parts->facts.has_receiver_errors = !parts->receiver_errors.empty();
-    parts->facts.receiver_errors = formats::summarize_errors(parts->receiver_errors);
-    parts->seconds.load = seconds_since(start);
-    return ShownFile(std::move(parts));
+    auto shown = std::unique_ptr<ShownFile>(new ShownFile(std::move(*asset), path));
+    shown->facts_.has_receiver_errors = !errors->empty();
+    shown->facts_.receiver_errors = formats::summarize_errors(*errors);
+    shown->receiver_errors_ = std::move(*errors);
+    shown->seconds_.load = seconds_since(start);
+    return shown;
 }
 
-ShownFile::ShownFile(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-ShownFile::ShownFile(ShownFile&&) noexcept = default;
-ShownFile& ShownFile::operator=(ShownFile&&) noexcept = default;
-ShownFile::~ShownFile() = default;
+ShownFile::ShownFile(OpenedAsset opened, std::string path)
+    : asset_(std::move(opened)),
+      path_(std::move(path)),
+      facts_(facts_of(asset_.loaded.view)),
+      view_(asset_.loaded.view) {}
 
 Viewpoint ShownFile::framing(const ViewState& state) const {
     const runtime::Camera camera =
-        runtime::frame_asset(parts_->whole(), state.fov, state.width, state.height);
+        runtime::frame_asset(whole(), state.fov, state.width, state.height);
     return {camera.eye, camera.target, camera.up};
 }
 
 formats::Status ShownFile::follow(const ViewState& state, const formats::Environment& light,
                                   std::uint64_t light_version, runtime::MapSampling sampling) {
-    Parts& parts = *parts_;
-    if (auto status = runtime::check_terms(parts.whole(), state.terms, parts.path); !status) {
+    if (auto status = runtime::check_terms(whole(), state.terms, path_); !status) {
         return status;
     }
-    if (auto status = parts.choose_rows(state); !status) return status;
-    if (light_version != parts.light_version) {
-        parts.renderer.reset();
-        parts.light.reset();
+    if (auto status = choose_rows(state); !status) return status;
+    if (light_version != light_version_) {
+        renderer_.reset();
+        light_.reset();
     }
     const auto is_lit = [&](const ViewState& lit) {
         return lit.rotate_light == state.rotate_light && lit.time == state.time &&
                lit.emitters == state.emitters && lit.terms == state.terms &&
-               (parts.lit_by == sampling || parts.lit_by == runtime::MapSampling::full);
+               (lit_by_ == sampling || lit_by_ == runtime::MapSampling::full);
     };
-    if (parts.renderer && parts.lit_for && is_lit(*parts.lit_for)) return formats::ok_status();
-    parts.lit_for.reset();
-    parts.exposure.reset();
-    if (auto status =
-            state.error_white > 0 ? parts.light_errors() : parts.relight(state, light, sampling);
+    if (renderer_ && lit_for_ && is_lit(*lit_for_)) return formats::ok_status();
+    lit_for_.reset();
+    exposure_.reset();
+    if (auto status = state.error_white > 0 ? light_errors() : relight(state, light, sampling);
         !status) {
         return status;
     }
-    parts.light_version = light_version;
-    parts.lit_for = state;
-    parts.lit_by = sampling;
+    light_version_ = light_version;
+    lit_for_ = state;
+    lit_by_ = sampling;
     return formats::ok_status();
 }
 
 formats::Result<runtime::Picture> ShownFile::draw(runtime::Camera camera,
                                                   std::uint32_t supersampling, bool is_exact,
                                                   const std::atomic<bool>& stop) {
-    camera.near_plane = runtime::near_plane_for(parts_->whole(), camera.eye);
+    camera.near_plane = runtime::near_plane_for(whole(), camera.eye);
     constexpr std::uint32_t kTile = 192;  // pixels: some dozen looks at `stop` a picture
     const runtime::GlRenderOptions usual;
-    parts_->drawing.supersampling = supersampling;
-    parts_->drawing.max_tile_samples = is_exact ? usual.max_tile_samples : kTile * supersampling;
-    parts_->drawing.stop = &stop;
-    auto picture = parts_->renderer->render(camera, parts_->drawing);
-    parts_->seconds.draw = parts_->renderer->stats().draw_seconds;
-    parts_->seconds.readback = parts_->renderer->stats().readback_seconds;
+    drawing_.supersampling = supersampling;
+    drawing_.max_tile_samples = is_exact ? usual.max_tile_samples : kTile * supersampling;
+    drawing_.stop = &stop;
+    auto picture = renderer_->render(camera, drawing_);
+    seconds_.draw = renderer_->stats().draw_seconds;
+    seconds_.readback = renderer_->stats().readback_seconds;
     return picture;
 }
 
 formats::Result<float> ShownFile::choose_exposure(runtime::Camera camera) {
-    if (parts_->exposure) return *parts_->exposure;
-    camera.near_plane = runtime::near_plane_for(parts_->whole(), camera.eye);
-    runtime::GlRenderOptions metering = parts_->drawing;
+    if (exposure_) return *exposure_;
+    camera.near_plane = runtime::near_plane_for(whole(), camera.eye);
+    runtime::GlRenderOptions metering = drawing_;
     metering.supersampling = 1;
     metering.stop = nullptr;
-    metering.background = metering.background && !parts_->view.clouds.empty();
-    const auto metered = parts_->renderer->render(runtime::meter_camera(camera), metering);
+    metering.background = metering.background && !view_.clouds.empty();
+    const auto metered = renderer_->render(runtime::meter_camera(camera), metering);
     if (!metered) return metered.error();
-    parts_->exposure = runtime::choose_exposure(*metered);
-    return *parts_->exposure;
-}
-
-const FileFacts& ShownFile::facts() const {
-    return parts_->facts;
-}
-const ViewSeconds& ShownFile::seconds() const {
-    return parts_->seconds;
-}
-double ShownFile::coefficient_error() const {
-    return parts_->error;
+    exposure_ = runtime::choose_exposure(*metered);
+    return *exposure_;
 }
 
 }  // namespace opaline::cli

@@ -3,13 +3,18 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bake/cli/error_map.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/view/view_state.h"
+#include "bake/encode/shorten_rows.h"
 #include "formats/opal/receiver_errors.h"
 #include "formats/opal/result.h"
+#include "runtime/distant_light.h"
+#include "runtime/gl/gl_renderer.h"
 #include "runtime/integrate_map.h"
 #include "runtime/picture/picture.h"
 
@@ -43,10 +48,10 @@ struct ViewSeconds {
 class ShownFile {
   public:
     /// Errors: as open_asset, and damaged errors by receiver.
-    static formats::Result<ShownFile> open(const std::string& path);
-    ShownFile(ShownFile&&) noexcept;
-    ShownFile& operator=(ShownFile&&) noexcept;
-    ~ShownFile();
+    static formats::Result<std::unique_ptr<ShownFile>> open(const std::string& path);
+    ShownFile(const ShownFile&) = delete;
+    ShownFile& operator=(const ShownFile&) = delete;
+    ~ShownFile() = default;
 
     /// The viewpoint that frames the file.
     Viewpoint framing(const ViewState& state) const;
@@ -69,16 +74,42 @@ class ShownFile {
     /// or what is shown changes, so that turning the camera changes no exposure. Errors: resource.
     formats::Result<float> choose_exposure(runtime::Camera camera);
 
-    const FileFacts& facts() const;
-    const ViewSeconds& seconds() const;
+    const FileFacts& facts() const { return facts_; }
+    const ViewSeconds& seconds() const { return seconds_; }
     /// Of the coefficients that the state leaves, against all: root mean square of the difference
     /// of the radiance of 4096 receivers at most, relative, under the light shown. 0 with all.
-    double coefficient_error() const;
+    double coefficient_error() const { return error_; }
 
   private:
-    struct Parts;
-    explicit ShownFile(std::unique_ptr<Parts> parts);
-    std::unique_ptr<Parts> parts_;
+    ShownFile(OpenedAsset opened, std::string path);
+    const formats::AssetView& whole() const { return asset_.loaded.view; }
+    std::vector<formats::Rgb> emitter_colors(const ViewState& state) const;
+    formats::Status choose_rows(const ViewState& state);
+    formats::Status make_renderer(const formats::Environment& map, const LightWithLayers& layers);
+    PartVectors project(const LightWithLayers& layers, const OpenedLight& sky,
+                        runtime::MapSampling sampling);
+    formats::Status relight(const ViewState& state, const formats::Environment& map,
+                            runtime::MapSampling sampling);
+    formats::Status light_errors();
+
+    OpenedAsset asset_;
+    std::string path_;
+    FileFacts facts_;
+    ViewSeconds seconds_;
+    std::vector<float> receiver_errors_;  ///< empty without any
+    bake::ShortRows short_rows_;
+    ErrorMap error_map_;
+    formats::AssetView view_;  ///< with the coefficients that are shown, or the map of errors
+    std::optional<std::uint32_t> coefficients_;
+    float error_white_ = 0;
+    std::optional<runtime::GlRenderer> renderer_;
+    std::uint64_t light_version_ = 0;
+    std::optional<runtime::DistantLight> light_;  ///< of that version, where there is no layer
+    std::optional<ViewState> lit_for_;
+    runtime::MapSampling lit_by_ = runtime::MapSampling::full;
+    runtime::GlRenderOptions drawing_;
+    std::optional<float> exposure_;  ///< of the light shown
+    double error_ = 0;
 };
 
 }  // namespace opaline::cli

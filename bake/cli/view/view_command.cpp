@@ -52,7 +52,7 @@ void apply_to_file(const ViewCommand& options, ViewState& state) {
 int run(const ViewCommand& options) {
     const auto steps = read_steps(options.script);
     ViewState state = options.begin;
-    require(check_light(state.light));
+    check_light(state.light);
     state.terms = require(formats::parse_terms(options.terms, formats::TermSet::baked, "--terms"));
     rotate_light_to(state, options.rotate_light);
     apply_to_file(options, state);
@@ -61,26 +61,22 @@ int run(const ViewCommand& options) {
 
 }  // namespace
 
-void add_view_command(CLI::App& app, Job& job) {
-    auto options = std::make_shared<ViewCommand>();
-    options->camera.size = "1280x800";
-    ViewState& begin = options->begin;
-    CLI::App* command = app.add_subcommand("view", "Show an .opal file in a window");
-    add_asset_argument(*command, begin.file);
-    command->add_option("other", begin.other, "a second one, shown right of a split")
-        ->option_text("OTHER.opal");
-    command->add_option("--light", begin.light, light_help())->option_text("ENV [studio]");
-    command
-        ->add_option("--script", options->script,
-                     "carry out the commands of a file, one a line; then the window stays open")
-        ->check(file_name())
-        ->option_text("FILE");
-    add_camera_options(*command, options->camera);
-    add_emitter_option(*command, options->emitters);
-    add_time_option(*command, begin.time);
-    add_look_options(*command, {options->rotate_light, options->terms, begin.exposure,
-                                begin.tone_map, begin.coefficients});
-    command->footer(
+void add_view_command(Program& program) {
+    auto [command, options] =
+        add_command<ViewCommand>(program, "view", "Show an .opal file in a window", run);
+    options.camera.size = "1280x800";
+    ViewState& begin = options.begin;
+    add_asset_argument(command, begin.file);
+    command.add("other", "OTHER.opal", text(begin.other), "a second one, shown right of a split");
+    command.add("--light", "ENV [studio]", text(begin.light), light_help());
+    command.add("--script", "FILE", file_name(options.script),
+                "carry out the commands of a file, one a line; then the window stays open");
+    add_camera_options(command, options.camera);
+    add_emitter_option(command, options.emitters);
+    add_time_option(command, begin.time);
+    add_look_options(command, {options.rotate_light, options.terms, begin.exposure, begin.tone_map,
+                               begin.coefficients});
+    command.footer(
         "Drag to orbit, with the right button to pan; the wheel zooms. R frames the object, L "
         "levels\n"
         "the horizon, Tab hides the controls. Drop an .opal file, or an .exr or .hdr light. Files "
@@ -94,7 +90,6 @@ void add_view_command(CLI::App& app, Job& job) {
         "What follows a # is left out. Words with blanks stand \"in quotes\". An error ends the "
         "program.\n\n"
         "Example:\n  opaline view scene.opal --light sky:3,35");
-    command->callback([options, &job] { job = [options] { return run(*options); }; });
 }
 
 }  // namespace opaline::cli

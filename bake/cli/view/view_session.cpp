@@ -45,12 +45,10 @@ std::string line_of(ViewState state, const std::string& file, const DrawnSide& s
 
 class Session {
   public:
-    Session(ViewWindow window, PicturePainter painter, ViewState begin,
-            std::vector<ScriptStep> steps)
-        : window_(std::move(window)),
-          painter_(std::move(painter)),
-          state_(std::move(begin)),
-          script_(std::move(steps)) {}
+    Session(const ViewState& begin, const std::vector<ScriptStep>& steps)
+        : window_(begin.width, begin.height), state_(begin), script_(steps) {
+        window_.set_title("Opaline: " + begin.file);
+    }
 
     int run(const std::string& script_name);
 
@@ -281,10 +279,7 @@ int Session::run(const std::string& script_name) {
 
 int run_view(const ViewState& begin, const std::vector<ScriptStep>& steps,
              const std::string& script) {
-    auto window = require(ViewWindow::open(begin.width, begin.height));
-    window.set_title("Opaline: " + begin.file);
-    auto painter = require(PicturePainter::create());
-    return Session(std::move(window), std::move(painter), begin, steps).run(script);
+    return Session(begin, steps).run(script);
 }
 
 }  // namespace opaline::cli

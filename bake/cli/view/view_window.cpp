@@ -10,17 +10,19 @@
 #include <cmath>
 #include <utility>
 
+#include "bake/cli/messages.h"
+
 namespace opaline::cli {
 namespace {
 
-formats::Error refuse_window(const char* doing) {
+[[noreturn]] void refuse_window(const char* doing) {
     const char* text = nullptr;
     ::glfwGetError(&text);
-    return formats::make_error(
+    refuse(formats::make_error(
         formats::ErrorKind::resource, "", "window",
         std::string(doing) + (text != nullptr ? ": " + std::string(text) : std::string()),
         "set DISPLAY or WAYLAND_DISPLAY to a display with OpenGL 3.3; `opaline render` makes "
-        "pictures without one");
+        "pictures without one"));
 }
 
 }  // namespace
@@ -92,17 +94,17 @@ struct ViewWindow::Parts {
     }
 };
 
-formats::Result<ViewWindow> ViewWindow::open(std::uint32_t width, std::uint32_t height) {
-    if (::glfwInit() != GLFW_TRUE) return refuse_window("no display can be opened");
-    auto parts = std::make_unique<Parts>();  // ends GLFW from now on
+ViewWindow::ViewWindow(std::uint32_t width, std::uint32_t height) {
+    if (::glfwInit() != GLFW_TRUE) refuse_window("no display can be opened");
+    parts_ = std::make_unique<Parts>();  // ends GLFW from now on
     ::glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     ::glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     ::glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     ::glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    parts->window = ::glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), "Opaline",
-                                       nullptr, nullptr);
-    if (parts->window == nullptr) return refuse_window("no window with OpenGL 3.3 can be made");
-    GLFWwindow* const window = parts->window;
+    parts_->window = ::glfwCreateWindow(static_cast<int>(width), static_cast<int>(height),
+                                        "Opaline", nullptr, nullptr);
+    if (parts_->window == nullptr) refuse_window("no window with OpenGL 3.3 can be made");
+    GLFWwindow* const window = parts_->window;
     // Where pixels are smaller than the window's units: as many pixels as were asked for.
     int pixels = 0, rows = 0;
     ::glfwGetFramebufferSize(window, &pixels, &rows);
@@ -113,20 +115,17 @@ formats::Result<ViewWindow> ViewWindow::open(std::uint32_t width, std::uint32_t 
     }
     ::glfwMakeContextCurrent(window);
     ::glfwSwapInterval(1);
-    ::glfwSetWindowUserPointer(window, parts.get());
-    parts->watch_input();
+    ::glfwSetWindowUserPointer(window, parts_.get());
+    parts_->watch_input();
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::GetIO().LogFilename = nullptr;
     ImGui_ImplGlfw_InitForOpenGL(window, true);
     ImGui_ImplOpenGL3_Init("#version 330 core");
-    parts->has_controls = true;
-    parts->scale_controls();
-    return ViewWindow(std::move(parts));
+    parts_->has_controls = true;
+    parts_->scale_controls();
 }
 
-ViewWindow::ViewWindow(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
-ViewWindow::ViewWindow(ViewWindow&&) noexcept = default;
 ViewWindow::~ViewWindow() = default;
 
 ViewWindow::Size ViewWindow::size() const {

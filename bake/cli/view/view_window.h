@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "formats/opal/result.h"
-
 struct GLFWwindow;
 
 namespace opaline::cli {
@@ -15,10 +13,11 @@ namespace opaline::cli {
 /// Nothing of it is remembered: there is no imgui.ini. One at a time.
 class ViewWindow {
   public:
-    /// Of so many pixels of the picture. Errors: resource, where no window can be had.
-    static formats::Result<ViewWindow> open(std::uint32_t width, std::uint32_t height);
-    ViewWindow(ViewWindow&&) noexcept;
-    ViewWindow& operator=(ViewWindow&&) = delete;
+    /// Of so many pixels of the picture. Throws Refusal (messages.h): resource, where no window
+    /// can be had.
+    ViewWindow(std::uint32_t width, std::uint32_t height);
+    ViewWindow(const ViewWindow&) = delete;
+    ViewWindow& operator=(const ViewWindow&) = delete;
     ~ViewWindow();
 
     /// Pixels of the picture, which are more than units of the window where the display has more
@@ -46,7 +45,6 @@ class ViewWindow {
 
   private:
     struct Parts;
-    explicit ViewWindow(std::unique_ptr<Parts> parts);
     std::unique_ptr<Parts> parts_;
 };
 
