@@ -184,7 +184,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     run_step(Step::study, unlit, knobs, context, subjects, log);
     result.plan = amend_plan(unlit, subjects, knobs, context);
     settle_subjects(unlit, result.plan, knobs, subjects);
-    knobs.model_error = find_model_error(result.plan);
+    knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
     const std::unique_ptr<OtherLight> light =
         find_shared_light(unlit, knobs, context, final_layouts(unlit, subjects), subjects, log);
