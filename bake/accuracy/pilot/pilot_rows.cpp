@@ -1,24 +1,17 @@
 #include "bake/accuracy/pilot/pilot_rows.h"
 
-#include <utility>
-
 #include "bake/accuracy/stored_luminance.h"
 #include "bake/base/ordered_parallel.h"
-#include "bake/encode/share_rows.h"
 
 namespace opaline::bake {
 namespace {
 
-// The pilot's receivers of a primitive, whose rows share their coefficients.
-struct PilotPrimitive {
-    RowShape shape;
-    std::vector<formats::SparseRows> rows;  // of each encoding
-    std::uint32_t receivers = 0;
-};
-
-RowShape shape_of(const RowLayout& layout) {
-    return {layout.terms(), layout.bands(),
-            layout.separate ? TermsSeen::together : TermsSeen::apart};
+// Luminance as the finished rows would give it.
+Luminance relight_encoded(const DenseRow& row, std::span<const float> h, const RowEncoder& encoder,
+                          std::span<const TestLight> lights) {
+    formats::SparseRows rows = empty_rows(encoder);
+    encode_receiver(encoder, row, rows);
+    return relight_rows({rows.view(), {0, row.terms, row.bands, 0, 0}, 0}, h, lights);
 }
 
 }  // namespace
@@ -73,68 +66,29 @@ void PilotRows::prepare(std::size_t effect) {
     }
 }
 
-std::vector<formats::SparseRows> PilotRows::encode(std::size_t receiver,
-                                                   std::span<const RowEncoder> encoders) const {
-    const PilotReceiver& r = receivers_[receiver];
-    const SubjectRows& own = subjects_.at(r.material);
-    const ReceiverSet& set = set_of(pilot_.bake.receivers, r.receiver);
-    const std::size_t i = r.receiver - set.first;
-    std::vector<float> values;
-    const DenseRow row = shape_row(own.subject->layout, setting_.cubemap_size, values);
-    gather_receiver(own.gatherers, set.outside[i], set.inside[i], place_[receiver], row);
-    std::vector<formats::SparseRows> rows;
-    for (const RowEncoder& encoder : encoders) {
-        rows.push_back(empty_rows(encoder));
-        encode_receiver(encoder, row, rows.back());
-    }
-    return rows;
-}
-
 PairsOfEncodings PilotRows::measure(std::span<const Encoding> encodings) const {
-    std::vector<RowEncoder> encoders, wide;
+    const std::span<const TestLight> lights = pilot_.lights;
+    std::vector<RowEncoder> encoders;
     for (const Encoding& encoding : encodings) {
         encoders.push_back(
             make_row_encoder(setting_.cubemap_size, encoding.coefficients, encoding.code_bits));
-        wide.push_back(widen(encoders.back()));
-    }
-    std::map<std::uint32_t, PilotPrimitive> primitives;  // by the first receiver
-    std::vector<std::uint32_t> place;                    // of each receiver in its primitive
-    for_each_block_in_order(
-        receivers_.size(), 1, pilot_.context,
-        [&](Range range) { return encode(range.begin, wide); },
-        [&](Range range, std::vector<formats::SparseRows>&& rows) {
-            const PilotReceiver& r = receivers_[range.begin];
-            PilotPrimitive& own = primitives[set_of(pilot_.bake.receivers, r.receiver).first];
-            place.push_back(own.receivers++);
-            if (own.rows.empty()) {
-                own.shape = shape_of(subjects_.at(r.material).subject->layout);
-                own.rows = std::move(rows);
-                return;
-            }
-            for (std::size_t e = 0; e < rows.size(); ++e) {
-                formats::append_rows(own.rows[e], rows[e]);
-            }
-        });
-    for (auto& [first, own] : primitives) {
-        for (std::size_t e = 0; e < encoders.size(); ++e) {
-            own.rows[e] = share_rows(std::move(own.rows[e]), own.shape, encoders[e]);
-        }
     }
     PairsOfEncodings pairs(encodings.size());
     for_each_block_in_order(
-        place.size(), 1, pilot_.context,
+        receivers_.size(), 1, pilot_.context,
         [&](Range range) {
             const PilotReceiver& r = receivers_[range.begin];
+            const SubjectRows& own = subjects_.at(r.material);
             const ReceiverSet& set = set_of(pilot_.bake.receivers, r.receiver);
-            const PilotPrimitive& own = primitives.at(set.first);
-            const std::vector<float> h = view_of_rows(subjects_.at(r.material).subject->layout,
-                                                      set.inside[r.receiver - set.first].normal);
+            const std::size_t i = r.receiver - set.first;
+            const RowLayout& layout = own.subject->layout;
+            std::vector<float> values;
+            const DenseRow row = shape_row(layout, setting_.cubemap_size, values);
+            gather_receiver(own.gatherers, set.outside[i], set.inside[i], place_[range.begin], row);
+            const std::vector<float> h = view_of_rows(layout, set.inside[i].normal);
             PairsOfEncodings found(encodings.size());
             for (std::size_t e = 0; e < encodings.size(); ++e) {
-                const RowSource source{own.rows[e].view(),
-                                       {0, own.receivers * own.shape.terms, own.shape.bands, 0, 0},
-                                       place[range.begin] * own.shape.terms};
-                append_pairs(relight_rows(source, h, pilot_.lights), r.truth, found[e]);
+                append_pairs(relight_encoded(row, h, encoders[e], lights), r.truth, found[e]);
             }
             return found;
         },

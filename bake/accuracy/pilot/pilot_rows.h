@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bake/accuracy/pilot/pilot.h"
-#include "bake/encode/row_sink.h"
 #include "bake/rows/gather_rows.h"
 
 namespace opaline::bake {
@@ -25,9 +24,7 @@ class PilotRows {
     /// Prepares an effect of the table anew, for knobs that have changed.
     void prepare(std::size_t effect);
 
-    /// The pairs of all receivers, one set for each encoding; fewer if cancelled. The coefficients
-    /// are those that matter most of all the pilot's rows of a primitive (share_rows), which stand
-    /// for all rows of it.
+    /// The pairs of all receivers, one set for each encoding; fewer if cancelled.
     PairsOfEncodings measure(std::span<const Encoding> encodings) const;
 
   private:
@@ -38,8 +35,6 @@ class PilotRows {
     };
     bool prepare_subject(SubjectRows& rows, std::size_t effect);
     void gather_anew(SubjectRows& rows);
-    std::vector<formats::SparseRows> encode(std::size_t receiver,
-                                            std::span<const RowEncoder> encoders) const;
 
     const PilotScene& pilot_;
     std::span<const PilotReceiver> receivers_;
