@@ -54,6 +54,8 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
     const std::string more =
         ", more than the " + error_percent(limit) +
         (!asked ? " that pass unnoticed"
+         : knobs.model_error > knobs.error_target
+             ? " that are asked for where the models err by " + error_percent(knobs.model_error)
          : knobs.model_error > 0
              ? " that the models leave of the " + error_percent(knobs.error_target) + " asked for"
              : " asked for");

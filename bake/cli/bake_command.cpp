@@ -124,8 +124,8 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
     const bake::EffectTable& effects = bake::all_effects();
     std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
     std::vector<bake::PlanEntry> others = result.volume_plan;
-    bake::Knobs budget = wanted;
-    budget.model_error = bake::find_model_error(first);
+    const bake::Knobs budget =
+        bake::with_model_error(effects, wanted, bake::find_model_error(first));
     return {bake::predict_costs({effects, scene, result.facts, budget, machine.rates,
                                  result.threads, extras.receiver_errors},
                                 first, others),

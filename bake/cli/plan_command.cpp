@@ -74,8 +74,7 @@ int run(const PlanCommand& options) {
     }
     require(report_warnings(warnings));
     const bake::StageRates rates = find_machine_rates().rates;
-    bake::Knobs budget = knobs;
-    budget.model_error = bake::find_model_error(plan);
+    const bake::Knobs budget = bake::with_model_error(effects, knobs, bake::find_model_error(plan));
     const bake::CostRequest request{effects, scene, facts, budget, rates, threads};
     const bake::CostPrediction cost = bake::predict_costs(request, plan, volumes);
     bake::predict_savings(request, plan);

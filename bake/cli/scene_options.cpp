@@ -76,10 +76,9 @@ std::string list_effects(const char* separator) {
 // Of scenes that take seconds before anything else can be said of them, such as a mesh of many
 // instances.
 void announce_size(const std::string& scene, const formats::SceneCounts& counts) {
-    constexpr std::uint64_t kMany = 1'000'000;
-    constexpr double kSeconds = 2.5e-6;  // of a vertex, to be placed and inspected
-    if (counts.vertices < kMany) return;
+    constexpr double kSeconds = 6e-7;  // of a vertex, to be placed and inspected
     const auto vertices = static_cast<double>(counts.vertices);
+    if (kSeconds * vertices < 1) return;
     print_note(fmt::format("{}: {:.1f} million vertices: to inspect them takes some {}",
                            printable(scene), 1e-6 * vertices, format_seconds(kSeconds * vertices)));
 }

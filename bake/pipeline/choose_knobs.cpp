@@ -123,10 +123,13 @@ void warn_of_missed_target(const EffectTable& effects, const AccuracyReport& acc
     if (auto missed = describe_missed_models(accuracy.target, accuracy.model)) {
         warnings.push_back(std::move(*missed));
     }
-    const std::string left = percent(accuracy.numerical) +
-                             (accuracy.model > 0 ? ", what the models leave of the " +
-                                                       percent(accuracy.target) + " asked for"
-                                                 : "");
+    const std::string left =
+        percent(accuracy.numerical) +
+        (accuracy.model > accuracy.target
+             ? ", which is asked for where the models err by " + percent(accuracy.model)
+         : accuracy.model > 0
+             ? ", what the models leave of the " + percent(accuracy.target) + " asked for"
+             : "");
     if (!accuracy.met) {
         const std::string given = name_given(effects, knobs);
         warnings.push_back(formats::make_warning(

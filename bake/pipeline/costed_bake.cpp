@@ -137,8 +137,14 @@ void bill_rows(const CostedBake& bake, const CostedSubject& subject, double rece
     for (std::size_t e = 0; e < effects.effects.size(); ++e) {
         const EffectDescriptor& effect = effects.effects[e];
         if (!subject.acts[e] || !gathers(effect, subject.layout)) continue;
-        SubjectCost cost = bake.cost_of(subject, receivers);
-        const Work all = effect.gather.work(cost);
+        // Sets share their batches: each pays for its receivers' part of those of the subject.
+        const SubjectCost cost =
+            bake.cost_of(subject, bake.request.facts.material[subject.material].receivers);
+        const double share = receivers / cost.receivers;
+        const auto of_share = [share](const Work& work) {
+            return Work{share * work.alone, share * work.shared};
+        };
+        const Work all = of_share(effect.gather.work(cost));
         Work of_parts;
         for_each_growth(
             bake, subject, [&](PlanEntry& entry, const RowLayout& before, const RowLayout& after) {
@@ -148,7 +154,8 @@ void bill_rows(const CostedBake& bake, const CostedSubject& subject, double rece
                                            before,     cost.receivers, cost.traces_rays};
                     const SubjectCost more{cost.input, cost.material,  cost.facts,
                                            after,      cost.receivers, cost.traces_rays};
-                    const Work growth = effect.gather.work(more) - effect.gather.work(less);
+                    const Work growth =
+                        of_share(effect.gather.work(more) - effect.gather.work(less));
                     bill.add(growth, &entry);
                     of_parts += growth;
                 }

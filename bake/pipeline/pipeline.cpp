@@ -22,6 +22,7 @@
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/rows/gather_rows.h"
+#include "bake/rows/shared_batches.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
@@ -66,7 +67,9 @@ formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
     RowSink sink =
         make_row_sink(make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits));
     const std::uint32_t total = count_receivers(bake.receivers);
-    for (const ReceiverSet& set : bake.receivers) {
+    SharedBatches batches(bake, subjects, knobs, context);
+    for (std::size_t s = 0; s < bake.receivers.size(); ++s) {
+        const ReceiverSet& set = bake.receivers[s];
         const SubjectState* const subject =
             set.size() == 0 ? nullptr : &state_of(subjects, set.material);
         if (subject == nullptr) continue;
@@ -77,6 +80,9 @@ formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
         GatheredRows gathered =
             run_stage(log, "rows of '" + bake.scene.primitives[set.primitive].name + "'",
                       std::move(group), [&](std::uint64_t& rays) {
+                          const SharedBatches::Found shared = batches.find(s, rays);
+                          job.shared = shared.gatherers;
+                          job.place = shared.place;
                           return gather_rows(job, std::move(gatherers), context, rays);
                       });
         formats::SparseRows& part = gathered.rows;
@@ -184,7 +190,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     run_step(Step::study, unlit, knobs, context, subjects, log);
     result.plan = amend_plan(unlit, subjects, knobs, context);
     settle_subjects(unlit, result.plan, knobs, subjects);
-    knobs.model_error = find_model_error(result.plan);
+    knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
     const std::unique_ptr<OtherLight> light =
         find_shared_light(unlit, knobs, context, final_layouts(unlit, subjects), subjects, log);

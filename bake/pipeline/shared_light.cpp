@@ -47,7 +47,7 @@ Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
             if (knob->words.empty()) {
-                coarse.set(*knob, knob->preset.front());
+                coarse.set(*knob, knob->coarse != 0 ? knob->coarse : knob->preset.front());
             }
         }
     }

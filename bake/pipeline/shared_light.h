@@ -9,7 +9,8 @@
 
 namespace opaline::bake {
 
-/// The knobs of media there: those of the coarsest preset, with the choices of `knobs`.
+/// The knobs of media there: KnobSpec::coarse, or those of the coarsest preset, with the choices of
+/// `knobs`.
 Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size);
 
 /// Light that an effect sends to all surfaces, or null if no acting effect does. `bake`: without

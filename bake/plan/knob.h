@@ -38,6 +38,8 @@ struct KnobSpec {
     /// Values of the presets draft, preview, production, reference: each at least as accurate as
     /// the one before.
     std::array<double, 4> preset{};
+    /// Of rows that are a step toward those of the file, and averaged on the way; 0: as draft.
+    double coarse = 0;
     /// What a pilot for a target error starts from; null: the value of preview.
     double (*for_target)(double error) = nullptr;
 

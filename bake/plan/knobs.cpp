@@ -33,6 +33,23 @@ Knobs preset(const EffectTable& effects, Quality quality) {
     return knobs;
 }
 
+// Where the pilot begins, but for what the user gave.
+void start_from(double error, const EffectTable& effects, Knobs& knobs) {
+    if (!knobs.cubemap_given) {
+        knobs.cubemap_size = error < 0.03 ? 16 : 8;
+    }
+    if (!knobs.coefficients_given) {
+        knobs.coefficients = expected_coefficients(error);
+    }
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            if (knob->for_target != nullptr && !knobs.is_given(*knob)) {
+                knobs.set(*knob, knob->for_target(error));
+            }
+        }
+    }
+}
+
 formats::Status start_from_target(Knobs& knobs, const EffectTable& effects,
                                   const BakeOptions& options) {
     if (!(options.error >= 1e-4 && options.error < 1)) {
@@ -40,15 +57,7 @@ formats::Status start_from_target(Knobs& knobs, const EffectTable& effects,
                           "give a relative RMS, such as 0.02 for 2 %");
     }
     knobs.error_target = options.error;
-    knobs.cubemap_size = options.error < 0.03 ? 16 : 8;
-    knobs.coefficients = expected_coefficients(options.error);
-    for (const EffectDescriptor& effect : effects.effects) {
-        for (const KnobSpec* knob : effect.knobs) {
-            if (knob->for_target != nullptr) {
-                knobs.set(*knob, knob->for_target(options.error));
-            }
-        }
-    }
+    start_from(options.error, effects, knobs);
     return formats::ok_status();
 }
 
@@ -103,8 +112,17 @@ void Knobs::set(const KnobSpec& knob, double value) {
 }
 
 double Knobs::numerical_target() const {
-    const double left = error_target * error_target - model_error * model_error;
-    return std::max(0.5 * error_target, std::sqrt(std::max(0.0, left)));
+    const double reachable = std::max(error_target, model_error);
+    const double left = reachable * reachable - model_error * model_error;
+    return std::max(0.5 * reachable, std::sqrt(left));
+}
+
+Knobs with_model_error(const EffectTable& effects, Knobs knobs, double error) {
+    knobs.model_error = error;
+    if (knobs.error_target > 0 && error > knobs.error_target) {
+        start_from(std::min(error, 1.0), effects, knobs);
+    }
+    return settle(std::move(knobs));
 }
 
 bool Knobs::is_given(const KnobSpec& knob) const {

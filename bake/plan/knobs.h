@@ -78,8 +78,9 @@ struct Knobs {
     double operator[](const KnobSpec& knob) const;
     void set(const KnobSpec& knob, double value);
     bool is_given(const KnobSpec& knob) const;
-    /// What the models leave of error_target to the numerical error; half of it at least, where the
-    /// target is missed for their sake.
+    /// What the models leave of error_target to the numerical error, half of it at least. Models
+    /// that err by more than the target miss it however fine the numbers are: these may then err by
+    /// half as much as the models, which adds an eighth to the error.
     double numerical_target() const;
 };
 
@@ -96,6 +97,10 @@ std::uint32_t sample_coefficients(const Knobs& knobs);
 
 /// Fills in the quality's values; refuses impossible ones (usage error).
 formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptions& options);
+
+/// The knobs of a bake whose models err by `error`, where the pilot begins: a target that they miss
+/// costs no more than one that they can meet.
+Knobs with_model_error(const EffectTable& effects, Knobs knobs, double error);
 
 /// Applies the limits between knobs: no cube map finer than the asset's, `all` where as many
 /// coefficients are asked for as there are.

@@ -106,7 +106,12 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
         std::uint64_t rays = 0;
     };
     const std::vector<std::uint32_t> order = order_of(set, layout);
-    const std::size_t step = batch_size(gatherers, set.size(), job.batch_bytes);
+    const std::size_t step =
+        job.shared != nullptr ? set.size() : batch_size(gatherers, set.size(), job.batch_bytes);
+    const std::span<const Gatherer> sources = job.shared != nullptr ? *job.shared : gatherers;
+    const auto place_of = [&](std::span<const std::uint32_t> batch, std::size_t v) {
+        return job.shared != nullptr ? job.place + batch[v] : v;
+    };
     const RowShape shape{layout.terms(), layout.bands(),
                          layout.separate ? TermsSeen::together : TermsSeen::apart};
     formats::SparseRows rows = empty_rows(encoder);
@@ -120,7 +125,7 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
         for (const std::uint32_t i : batch) {
             points.push_back(set.inside[i]);
         }
-        rays += gather_batches(gatherers, points);
+        if (job.shared == nullptr) rays += gather_batches(gatherers, points);
         for_each_block_in_order(
             batch.size(), kReceiversPerBlock, context,
             [&](Range range) {
@@ -128,8 +133,8 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
                 std::vector<float> values;
                 const DenseRow row = shape_row(layout, encoder.selector.cubemap_size, values);
                 for (std::size_t v = range.begin; v < range.end; ++v) {
-                    block.rays +=
-                        gather_receiver(gatherers, set.outside[batch[v]], points[v], v, row);
+                    block.rays += gather_receiver(sources, set.outside[batch[v]], points[v],
+                                                  place_of(batch, v), row);
                     encode_receiver(encoder, row, block.rows);
                     if (job.measures_errors) {
                         block.losses.add(row);

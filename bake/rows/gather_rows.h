@@ -51,6 +51,10 @@ struct RowJob {
     std::uint32_t total = 0;  ///< receivers of all sets, for the progress
     std::size_t batch_bytes = static_cast<std::size_t>(kBatchBytes);
     bool measures_errors = false;
+    /// With batches that hold all receivers of the set in its order, the first at `place`
+    /// (SharedBatches); null: the set gathers batches of its own.
+    const std::vector<Gatherer>* shared = nullptr;
+    std::size_t place = 0;
 };
 
 struct GatheredRows {

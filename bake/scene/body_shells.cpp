@@ -189,10 +189,18 @@ void cut_into_shells(BodyShells& body) {
     }
 }
 
-std::vector<bool> only(const Scene& scene, std::uint32_t material) {
+std::vector<std::uint32_t> primitives_of(const Scene& scene, const std::vector<bool>& chosen) {
+    std::vector<std::uint32_t> primitives;
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        if (chosen[scene.primitives[p].material]) primitives.push_back(p);
+    }
+    return primitives;
+}
+
+std::vector<std::uint32_t> primitives_of(const Scene& scene, std::uint32_t material) {
     std::vector<bool> chosen(scene.materials.size(), false);
     chosen[material] = true;
-    return chosen;
+    return primitives_of(scene, chosen);
 }
 
 }  // namespace
@@ -209,20 +217,19 @@ glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t) {
 }
 
 BodyShells weld_triangles(const Scene& scene, std::uint32_t material) {
-    return weld_triangles(scene, only(scene, material));
+    return weld_triangles(scene, primitives_of(scene, material));
 }
 
-BodyShells weld_triangles(const Scene& scene, const std::vector<bool>& chosen) {
+BodyShells weld_triangles(const Scene& scene, std::span<const std::uint32_t> primitives) {
     BodyShells body;
     std::size_t vertices = 0;
-    for (const Primitive& primitive : scene.primitives) {
-        vertices += chosen[primitive.material] ? primitive.position.size() : 0;
+    for (const std::uint32_t p : primitives) {
+        vertices += scene.primitives[p].position.size();
     }
     Places places(vertices);
     std::vector<std::uint32_t> point;  // of each vertex of a primitive
-    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+    for (const std::uint32_t p : primitives) {
         const Primitive& primitive = scene.primitives[p];
-        if (!chosen[primitive.material]) continue;
         point.assign(primitive.position.size(), Places::kNone);
         for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
             BodyTriangle t{{}, p, i};
@@ -245,11 +252,15 @@ BodyShells weld_triangles(const Scene& scene, const std::vector<bool>& chosen) {
 }
 
 BodyShells make_body_shells(const Scene& scene, std::uint32_t material) {
-    return make_body_shells(scene, only(scene, material));
+    return make_body_shells(scene, primitives_of(scene, material));
 }
 
 BodyShells make_body_shells(const Scene& scene, const std::vector<bool>& chosen) {
-    BodyShells body = weld_triangles(scene, chosen);
+    return make_body_shells(scene, primitives_of(scene, chosen));
+}
+
+BodyShells make_body_shells(const Scene& scene, std::span<const std::uint32_t> primitives) {
+    BodyShells body = weld_triangles(scene, primitives);
     cut_into_shells(body);
     return body;
 }

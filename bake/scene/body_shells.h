@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "formats/scene.h"
@@ -50,13 +51,15 @@ glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t);
 /// and `triangle` alone. Those folded to a line are left out.
 BodyShells weld_triangles(const formats::Scene& scene, std::uint32_t material);
 
-/// As the former, of all materials that are chosen.
-BodyShells weld_triangles(const formats::Scene& scene, const std::vector<bool>& chosen);
+/// As the former, of some primitives.
+BodyShells weld_triangles(const formats::Scene& scene, std::span<const std::uint32_t> primitives);
 
 /// The shells of a material's surface. Vertices at one position are one point. Triangles are
 /// connected if they share an edge with exactly one other triangle. The smaller part of a shell by
 /// area is turned, so that the whole shell faces one way. Triangles folded to a line are left out.
 BodyShells make_body_shells(const formats::Scene& scene, std::uint32_t material);
+/// As the former, of all materials that are chosen, or of some primitives.
 BodyShells make_body_shells(const formats::Scene& scene, const std::vector<bool>& chosen);
+BodyShells make_body_shells(const formats::Scene& scene, std::span<const std::uint32_t> primitives);
 
 }  // namespace opaline::bake

@@ -5,8 +5,10 @@
 #include <cstddef>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "bake/scene/body_shells.h"
+#include "bake/scene/parts_apart.h"
 
 namespace opaline::bake {
 namespace {
@@ -39,40 +41,47 @@ double area_of(const BodyShells& body, std::uint32_t triangle) {
 Flaps find_flaps(const formats::Scene& scene, std::uint32_t material) {
     Flaps flaps;
     flaps.first_index.resize(scene.primitives.size());
-    const BodyShells body = weld_triangles(scene, material);
-    std::vector<Facet> facets;
-    facets.reserve(body.triangle.size());
     double area = 0, cancelled = 0;
-    for (std::uint32_t t = 0; t < body.triangle.size(); ++t) {
-        facets.push_back(make_facet(body.triangle[t], t));
-        area += area_of(body, t);
-    }
-    // Of one set of corners: first those that face one way, then the others.
-    std::ranges::sort(facets, [](const Facet& a, const Facet& b) {
-        return std::tie(a.corner, a.is_even, a.triangle) <
-               std::tie(b.corner, b.is_even, b.triangle);
-    });
-    std::vector<std::uint32_t> triangles;
-    for (std::size_t begin = 0, end = 0; begin < facets.size(); begin = end) {
-        std::size_t odd = 0;
-        while (end < facets.size() && facets[end].corner == facets[begin].corner) {
-            odd += facets[end++].is_even ? 0u : 1u;
+    // Part by part, which fit into the cache; what is apart has no corners in common.
+    for (const std::vector<std::uint32_t>& part : list_parts_apart(scene, material)) {
+        const BodyShells body = weld_triangles(scene, part);
+        std::vector<Facet> facets;
+        facets.reserve(body.triangle.size());
+        for (std::uint32_t t = 0; t < body.triangle.size(); ++t) {
+            facets.push_back(make_facet(body.triangle[t], t));
+            area += area_of(body, t);
         }
-        const std::size_t pairs = std::min(odd, end - begin - odd);
-        for (std::size_t i = 0; i < pairs; ++i) {
-            triangles.push_back(facets[begin + i].triangle);
-            triangles.push_back(facets[begin + odd + i].triangle);
-            cancelled += 2 * area_of(body, facets[begin].triangle);
+        // Of one set of corners: first those that face one way, then the others.
+        std::ranges::sort(facets, [](const Facet& a, const Facet& b) {
+            return std::tie(a.corner, a.is_even, a.triangle) <
+                   std::tie(b.corner, b.is_even, b.triangle);
+        });
+        const auto take = [&](std::uint32_t triangle) {
+            const BodyTriangle& t = body.triangle[triangle];
+            flaps.first_index[t.primitive].push_back(t.first_index);
+        };
+        for (std::size_t begin = 0, end = 0; begin < facets.size(); begin = end) {
+            std::size_t odd = 0;
+            while (end < facets.size() && facets[end].corner == facets[begin].corner) {
+                odd += facets[end++].is_even ? 0u : 1u;
+            }
+            const std::size_t pairs = std::min(odd, end - begin - odd);
+            for (std::size_t i = 0; i < pairs; ++i) {
+                take(facets[begin + i].triangle);
+                take(facets[begin + odd + i].triangle);
+                cancelled += 2 * area_of(body, facets[begin].triangle);
+            }
+            flaps.pairs += pairs;
         }
     }
-    if (cancelled > 0.5 * area) return flaps;
-    for (const std::uint32_t t : triangles) {
-        flaps.first_index[body.triangle[t].primitive].push_back(body.triangle[t].first_index);
+    if (cancelled > 0.5 * area) {
+        flaps = {};
+        flaps.first_index.resize(scene.primitives.size());
+        return flaps;
     }
     for (std::vector<std::uint32_t>& first : flaps.first_index) {
         std::ranges::sort(first);
     }
-    flaps.pairs = triangles.size() / 2;
     return flaps;
 }
 

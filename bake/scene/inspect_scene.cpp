@@ -1,16 +1,20 @@
 #include "bake/scene/inspect_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "bake/scene/body_shells.h"
 #include "bake/scene/holes.h"
 #include "bake/scene/horizon.h"
 #include "bake/scene/nested_media.h"
+#include "bake/scene/parts_apart.h"
 #include "bake/scene/scene_facts.h"
 #include "bake/scene/sent_share.h"
 
@@ -37,39 +41,6 @@ struct Searches {
 // inward.
 bool folds_inward(const BodyShell& shell) {
     return (shell.volume < 0 ? shell.ridge : shell.valley) > kMostElevation;
-}
-
-// True if, for each point of the shell, all other points lie below its tangent plane. The tangent
-// plane is normal to the sum of the adjacent area vectors: for a convex body each facet's plane
-// supports the body, and so does any plane between them.
-bool is_convex(const BodyShells& body, const BodyShell& shell, Searches& searches) {
-    const double outward = shell.volume < 0 ? -1 : 1;
-    Triangles triangles;
-    std::vector<std::pair<std::uint32_t, glm::dvec3>> normal;  // by point
-    for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
-        const BodyTriangle& t = body.triangle[body.order[i]];
-        triangles.push_back(
-            {body.position[t.point[0]], body.position[t.point[1]], body.position[t.point[2]]});
-        for (const std::uint32_t p : t.point) {
-            normal.emplace_back(p, outward * area_vector(body, t));
-        }
-    }
-    std::stable_sort(normal.begin(), normal.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    const HorizonTree tree = make_horizon_tree(std::move(triangles));
-    HorizonSearch search = searches.start();
-    for (std::size_t i = 0, end = 0; i < normal.size() && !search.is_over(); i = end) {
-        glm::dvec3 sum(0);
-        for (; end < normal.size() && normal[end].first == normal[i].first; ++end) {
-            sum += normal[end].second;
-        }
-        const double length = glm::length(sum);
-        if (length > 0) {
-            look_over_horizon(tree, body.position[normal[i].first], sum / length, search);
-        }
-    }
-    searches.nodes_left = search.nodes_left;
-    return !search.is_over();
 }
 
 // Size, colours and the tilt of shading normals against their facets. Volumes are those of cones
@@ -154,30 +125,118 @@ void inspect_surroundings(const Scene& scene, SceneFacts& facts) {
     }
 }
 
-// Parts, their convexity, and the horizon of their receivers. The `tree` of the whole scene is
-// built on first use.
-void inspect_shape(const Scene& scene, std::uint32_t material, SceneFacts& facts, HorizonTree& tree,
-                   Searches& searches) {
-    MaterialFacts& own = facts.material[material];
-    const BodyShells body = make_body_shells(scene, material);
-    own.open_edges = body.open_edges;
-    if (body.open_edges > 0) {
-        own.holes = own.area > 0 ? bound_hole_area(body) / own.area : 1;
+// Where the scene reaches farthest along each axis, both ways.
+using Ends = std::array<glm::vec3, 6>;
+
+Ends find_ends(const Scene& scene) {
+    Ends ends;
+    ends.fill(glm::vec3(0));
+    std::array<float, 6> farthest;
+    farthest.fill(-std::numeric_limits<float>::infinity());
+    for (const Primitive& p : scene.primitives) {
+        for (const std::uint32_t v : p.index) {
+            const glm::vec3 x = p.position[v];
+            for (glm::length_t axis = 0; axis < 3; ++axis) {
+                for (const bool back : {false, true}) {
+                    const auto end = static_cast<std::size_t>(2 * axis + (back ? 1 : 0));
+                    const float along = back ? -x[axis] : x[axis];
+                    if (along > farthest[end]) {
+                        farthest[end] = along;
+                        ends[end] = x;
+                    }
+                }
+            }
+        }
     }
-    own.parts = static_cast<std::uint32_t>(body.shell.size());
-    const bool may_be_open = std::none_of(body.shell.begin(), body.shell.end(), folds_inward);
-    if (may_be_open) {  // in a non-convex part some receiver sees another point of it
+    return ends;
+}
+
+// Whether some receiver sees another corner of its triangle, or one of the scene's ends, above its
+// horizon. Of most materials that are not open this is found at once, without any topology.
+bool sees_at_a_glance(const Scene& scene, std::uint32_t material, const Ends& ends, double flat) {
+    const auto sees = [&](const Primitive& p, std::uint32_t v, glm::vec3 point) {
+        const glm::dvec3 to = glm::dvec3(point) - glm::dvec3(p.position[v]);
+        const double height = glm::dot(glm::dvec3(p.normal[v]), to);
+        return height > flat &&
+               height * height > kMostElevation * kMostElevation * glm::dot(to, to);
+    };
+    for (const Primitive& p : scene.primitives) {
+        if (p.material != material) continue;
+        for (std::size_t i = 0; i + 2 < p.index.size(); i += 3) {
+            const std::uint32_t* const v = &p.index[i];
+            const glm::dvec3 a = p.position[v[0]], b = p.position[v[1]], c = p.position[v[2]];
+            if (glm::cross(b - a, c - a) == glm::dvec3(0)) continue;  // no ray hits it
+            for (std::size_t k = 0; k < 3; ++k) {
+                if (sees(p, v[k], p.position[v[(k + 1) % 3]]) ||
+                    sees(p, v[k], p.position[v[(k + 2) % 3]])) {
+                    return true;
+                }
+            }
+        }
+        for (std::uint32_t v = 0; v < p.position.size(); ++v) {
+            if (std::ranges::any_of(ends, [&](glm::vec3 end) { return sees(p, v, end); })) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+// Of primitives of one material that are apart from its others.
+struct PartShape {
+    std::uint64_t open_edges = 0;
+    double hole_area = 0;  ///< [m^2] a bound
+    bool folds = false;    ///< inward
+};
+
+PartShape inspect_part(const Scene& scene, std::span<const std::uint32_t> primitives) {
+    const BodyShells body = make_body_shells(scene, primitives);
+    return {body.open_edges, bound_hole_area(body), std::ranges::any_of(body.shell, folds_inward)};
+}
+
+// Copies of a mesh are inspected once.
+PartShape inspect_parts(const Scene& scene, std::uint32_t material) {
+    std::vector<std::pair<const Primitive*, PartShape>> known;
+    PartShape all;
+    for (const std::vector<std::uint32_t>& part : list_parts_apart(scene, material)) {
+        const Primitive& first = scene.primitives[part.front()];
+        std::optional<PartShape> own;
+        for (const auto& [of, shape] : known) {
+            if (own || of->mesh != first.mesh || of->primitive != first.primitive) continue;
+            if (const auto scale = part.size() == 1 ? scale_of_copy(first, *of) : std::nullopt) {
+                own = shape;
+                own->hole_area *= *scale * *scale;
+            }
+        }
+        if (!own) {
+            constexpr std::size_t kMostKnown = 16;  // of one mesh, stretched in different ways
+            own = inspect_part(scene, part);
+            if (part.size() == 1 && known.size() < kMostKnown) known.emplace_back(&first, *own);
+        }
+        all.open_edges += own->open_edges;
+        all.hole_area += own->hole_area;
+        all.folds = all.folds || own->folds;
+    }
+    return all;
+}
+
+// Holes of media, and the horizon of receivers. The `tree` of the whole scene is built on first
+// use.
+void inspect_shape(const Scene& scene, std::uint32_t material, const Ends& ends, SceneFacts& facts,
+                   HorizonTree& tree, Searches& searches) {
+    MaterialFacts& own = facts.material[material];
+    const bool sees = sees_at_a_glance(scene, material, ends, searches.flat);
+    if (sees && !scene.materials[material].medium) return;
+    const PartShape shape = inspect_parts(scene, material);
+    own.open_edges = shape.open_edges;
+    if (shape.open_edges > 0) {
+        own.holes = own.area > 0 ? shape.hole_area / own.area : 1;
+    }
+    if (!sees && !shape.folds) {  // in a part that folds inward some receiver sees it
         if (tree.node.empty()) {
             tree = make_horizon_tree(scene);
         }
         own.horizon.elevation = find_elevation(scene, tree, material, searches);
-    }
-    if (body.shell.size() == 1 && own.horizon.elevation <= kMostElevation) {
-        own.convex_parts = 1;  // all points lie below every tangent plane
-        return;
-    }
-    for (const BodyShell& shell : body.shell) {
-        own.convex_parts += !folds_inward(shell) && is_convex(body, shell, searches) ? 1 : 0;
     }
 }
 
@@ -217,10 +276,11 @@ SceneFacts inspect_scene(const Scene& scene) {
     constexpr float kRoundings = 4 * 0x1p-23f;
     Searches searches{
         static_cast<double>(kRoundings * std::max({largest.x, largest.y, largest.z}))};
+    const Ends ends = find_ends(scene);
     HorizonTree tree;
     for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
         if (facts.material[m].receivers > 0) {
-            inspect_shape(scene, m, facts, tree, searches);
+            inspect_shape(scene, m, ends, facts, tree, searches);
         }
     }
     return facts;

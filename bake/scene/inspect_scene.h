@@ -8,9 +8,10 @@ namespace opaline::bake {
 /// Inspects meshes, colours and coefficients; traces no rays. Bodies should face outward
 /// (orient_bodies). Work is bounded: for a huge mesh the answers are conservative.
 ///
-/// Convexity is tested by its definition, without assumptions on connectivity: a part is convex if,
-/// for each of its points, all its other points lie below the tangent plane there. A part with an
-/// edge that folds inward is rejected at once.
+/// Where some receiver sees a corner of its own triangle or an end of the scene above its horizon,
+/// nothing more is asked about occlusion. Else the whole scene is searched, unless an edge folds
+/// inward. Topology is that of parts whose boxes are apart; copies of one mesh are inspected once:
+/// a scene of instances costs a pass over its vertices and triangles.
 SceneFacts inspect_scene(const formats::Scene& scene);
 
 }  // namespace opaline::bake

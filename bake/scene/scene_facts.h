@@ -51,12 +51,9 @@ struct MaterialFacts {
     double mean_edge = 0;                ///< [m]
     glm::vec3 low{1e30f}, high{-1e30f};  ///< bounds [m]
 
-    /// Triangles are connected by edges that exactly two of them share.
-    std::uint32_t parts = 0;
-    std::uint32_t convex_parts = 0;  ///< whose points all lie on their hull, within kMostElevation
-    std::uint64_t open_edges = 0;    ///< where an odd number of triangles meet
-    bool is_closed() const { return triangles > 0 && open_edges == 0; }
-    /// Bound on the area of holes over that of the surface (holes.h).
+    /// Of a medium: edges where an odd number of triangles meet.
+    std::uint64_t open_edges = 0;
+    /// Of a medium: bound on the area of holes over that of the surface (holes.h).
     double holes = 0;
     /// Whether volume and area say how thick it is. A body with large holes may be a sheet: only
     /// rays tell. Small ones change the volume by a few percent, as it is taken from a point of the

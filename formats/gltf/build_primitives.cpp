@@ -1,7 +1,10 @@
 #include "formats/gltf/build_primitives.h"
 
+#include <algorithm>
 #include <cmath>
+#include <deque>
 #include <string>
+#include <utility>
 
 #include "formats/gltf/choose_origin.h"
 #include "formats/gltf/complete_normals.h"
@@ -164,6 +167,59 @@ void place_indices(const PrimitiveData& data, bool mirrored, Primitive& out, Rep
     }
 }
 
+// The data of the mesh that was read last: instances of one mesh mostly follow one another. What a
+// report was made of is read again, so that each instance is named.
+class LastMesh {
+  public:
+    LastMesh(const Document& document, const std::vector<Bytes>& buffers)
+        : document_(document), buffers_(buffers) {}
+
+    // Null where the primitive is at fault. Valid until the next call.
+    const PrimitiveData* read(const MeshPrimitive& primitive, const WantedData& wanted,
+                              const std::string& where, Report& report) {
+        const Key key{&primitive, wanted.morph_weights, wanted.joints};
+        const auto found = std::ranges::find(known_, key, &Known::key);
+        if (found != known_.end()) return &found->data;
+        const std::size_t said = count_said(report);
+        auto data = read_primitive(document_, buffers_, primitive, wanted, where, report);
+        if (!data) return nullptr;
+        if (said != count_said(report)) {
+            reported_ = std::move(*data);
+            return &reported_;
+        }
+        return &known_.emplace_back(Known{key, std::move(*data)}).data;
+    }
+
+    // Keeps the primitives of one mesh alone.
+    void begin(std::uint32_t mesh) {
+        if (mesh != mesh_) known_.clear();
+        mesh_ = mesh;
+    }
+
+  private:
+    struct Key {
+        const MeshPrimitive* primitive = nullptr;
+        std::vector<double> morph_weights;
+        bool joints = false;
+        bool operator==(const Key&) const = default;
+    };
+    struct Known {
+        Key key;
+        PrimitiveData data;
+    };
+
+    static std::size_t count_said(const Report& report) {
+        return report.errors.size() + report.errors_left_out + report.warnings.size() +
+               report.warnings_left_out + report.notes.size();
+    }
+
+    const Document& document_;
+    const std::vector<Bytes>& buffers_;
+    std::uint32_t mesh_ = kNone;
+    std::deque<Known> known_;
+    PrimitiveData reported_;
+};
+
 }  // namespace
 
 bool has_area(const Primitive& primitive) {
@@ -179,10 +235,12 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
     const double metres_per_unit = options.metres_per_unit;
     scene.origin = choose_origin(document, instances, buffers, metres_per_unit);
     ComputedNormals computed;
+    LastMesh meshes(document, buffers);
     for (const MeshInstance& instance : instances) {
         const Node& node = document.nodes[instance.node];
         const std::uint32_t mesh_index = node.mesh;
         const Mesh& mesh = document.meshes[mesh_index];
+        meshes.begin(mesh_index);
         const std::size_t first = scene.primitives.size();
         for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p) {
             const MeshPrimitive& source = mesh.primitives[p];
@@ -204,14 +262,14 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
             const Material& material = scene.materials[out.material];
             // Kept without a texture, too: a media file may bring one.
             const bool has_normal_map = material.normal_image != kNone;
-            const auto data = read_primitive(
-                document, buffers, source,
-                {.texcoord_set = material.base_color_texcoord,
-                 .tangents = has_normal_map,
-                 .joints = !instance.joints.empty(),
-                 .morph_weights = node.weights.empty() ? mesh.weights : node.weights},
-                out.name, report);
-            if (!data) continue;
+            const PrimitiveData* const data =
+                meshes.read(source,
+                            {.texcoord_set = material.base_color_texcoord,
+                             .tangents = has_normal_map,
+                             .joints = !instance.joints.empty(),
+                             .morph_weights = node.weights.empty() ? mesh.weights : node.weights},
+                            out.name, report);
+            if (data == nullptr) continue;
             const Placement placement = place_primitive(instance, *data, out.name, report);
             place_positions(*data, placement, metres_per_unit, scene.origin, out, report);
             place_normals(*data, placement, out);

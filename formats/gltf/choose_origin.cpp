@@ -104,17 +104,23 @@ glm::dvec3 choose_origin(const Document& document, const std::vector<MeshInstanc
 void warn_of_coarse_positions(const PrimitiveData& stored, const Primitive& placed,
                               glm::dvec3 origin, Report& report) {
     constexpr double kCoarse = 0.01;
+    constexpr std::size_t kTriangles = 10'000;  // evenly spaced, whose edges stand for all
+    const std::size_t step = 3 * (1 + placed.index.size() / 3 / kTriangles);
     double edges = 0, stored_edges = 0, in_frame = 0, in_world = 0;
+    std::size_t count = 0;
     const auto corner = [&](std::uint32_t v) {
         const float* p = &stored.position[3 * std::size_t{v}];
         return glm::dvec3(p[0], p[1], p[2]);
     };
-    for (std::size_t i = 0; i < placed.index.size(); ++i) {
-        const std::uint32_t a = placed.index[i], b = placed.index[i % 3 == 2 ? i - 2 : i + 1];
-        edges += glm::distance(glm::dvec3(placed.position[a]), glm::dvec3(placed.position[b]));
-        stored_edges += glm::distance(corner(a), corner(b));
+    for (std::size_t i = 0; i + 2 < placed.index.size(); i += step) {
+        for (std::size_t k = 0; k < 3; ++k, ++count) {
+            const std::uint32_t a = placed.index[i + k], b = placed.index[i + (k + 1) % 3];
+            edges += glm::distance(glm::dvec3(placed.position[a]), glm::dvec3(placed.position[b]));
+            stored_edges += glm::distance(corner(a), corner(b));
+        }
     }
-    const auto count = static_cast<double>(std::max<std::size_t>(1, placed.index.size()));
+    const double mean = count > 0 ? edges / static_cast<double>(count) : 0;
+    const double stored_mean = count > 0 ? stored_edges / static_cast<double>(count) : 0;
     for (const glm::vec3& v : placed.position) {
         const glm::dvec3 p(v), frame = glm::abs(p), world = glm::abs(origin + p);
         in_frame = std::max({in_frame, frame.x, frame.y, frame.z});
@@ -124,16 +130,16 @@ void warn_of_coarse_positions(const PrimitiveData& stored, const Primitive& plac
         return std::to_string(static_cast<int>(std::min(100 * share + 0.5, 1e6))) +
                " % of its mean edge length";
     };
-    if (const double c = coarseness(largest(stored.position), stored_edges / count); c > kCoarse) {
+    if (const double c = coarseness(largest(stored.position), stored_mean); c > kCoarse) {
         report.warn(placed.name,
                     "its POSITION values are so large that their float spacing is " + percent(c),
                     "centre the mesh on its own origin and move it by its node");
-    } else if (const double f = coarseness(in_frame, edges / count); f > kCoarse) {
+    } else if (const double f = coarseness(in_frame, mean); f > kCoarse) {
         report.warn(
             placed.name,
             "the scene is so large that the float spacing of its positions is " + percent(f),
             "bake distant parts as separate scenes");
-    } else if (const double w = coarseness(in_world, edges / count); w > kCoarse) {
+    } else if (const double w = coarseness(in_world, mean); w > kCoarse) {
         report.warn(placed.name,
                     "it is so far from the world's origin that the float spacing of positions in "
                     "the baked file is " +

@@ -67,6 +67,26 @@ TEST(CostModel, TotalIsTheSumOfStagesAndOfEffectsAndTheRest) {
     }
 }
 
+// Light maps of a medium show all its bodies, and are drawn once for the receivers of all of them
+// that fit into a batch (rows/shared_batches): 16 balls cost some 16 times as much as one, but for
+// rays, which are dearer among more triangles.
+TEST(CostModel, BodiesOfAMediumShareTheLightMapsOfSingleScattering) {
+    const auto seconds_of_single = [](int balls) {
+        std::vector<formats::Primitive> primitives;
+        for (int i = 0; i < balls; ++i) {
+            primitives.push_back(tests::make_sphere(4, 1, {3.0f * static_cast<float>(i), 0, 0}));
+        }
+        Knobs knobs;
+        knobs.set(kMultipleModel, static_cast<double>(MultipleModel::dipole));
+        const Predicted p =
+            predict(tests::make_translucent_scene(std::move(primitives), forward_medium()), knobs);
+        const double seconds = find_entry(p.plan, "single", 0)->predicted_seconds;
+        EXPECT_GT(seconds, 0);
+        return seconds;
+    };
+    EXPECT_LT(seconds_of_single(16), 2.0 * 16 * seconds_of_single(1));
+}
+
 TEST(CostModel, TermsBeyondTheFirstPayForTheirRows) {
     Knobs knobs;
     knobs.set(kPhaseTerms, 9);

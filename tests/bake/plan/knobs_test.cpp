@@ -62,8 +62,34 @@ TEST(Knobs, WhatTheModelLeavesOfATargetIsForTheNumbersAndHalfOfItAtLeast) {
     EXPECT_DOUBLE_EQ(knobs.numerical_target(), 0.04) << "3, 4, 5";
     knobs.model_error = 0.049;
     EXPECT_DOUBLE_EQ(knobs.numerical_target(), 0.025);
-    knobs.model_error = 1;
-    EXPECT_DOUBLE_EQ(knobs.numerical_target(), 0.025) << "out of reach, but as good as can be";
+}
+
+// Where models err by m, the least error that can be asked for is m; the numbers may then err by
+// m / 2. A target below m is missed in any case, and asks for no finer numbers than that.
+TEST(Knobs, TargetThatModelsMissCostsNoMoreThanTheLeastThatTheyCanMeet) {
+    const double model = 0.2;
+    const auto begin = [&](double target) {
+        BakeOptions options;
+        options.error = target;
+        return with_model_error(all_effects(), *resolve_knobs(all_effects(), options), model);
+    };
+    const Knobs reachable = begin(model), hopeless = begin(0.005);
+    EXPECT_DOUBLE_EQ(reachable.numerical_target(), 0.1);
+    EXPECT_DOUBLE_EQ(hopeless.numerical_target(), 0.1);
+    EXPECT_EQ(hopeless.cubemap_size, reachable.cubemap_size);
+    EXPECT_EQ(hopeless.coefficients, reachable.coefficients);
+    for (const EffectDescriptor& effect : all_effects().effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            EXPECT_EQ(hopeless[*knob], reachable[*knob]) << knob->name;
+        }
+    }
+    BakeOptions given;
+    given.error = 0.005;
+    given.cubemap_size = 32;
+    given.set(kSamples, 5000);
+    const Knobs kept = with_model_error(all_effects(), *resolve_knobs(all_effects(), given), model);
+    EXPECT_EQ(kept.cubemap_size, 32u);
+    EXPECT_EQ(kept[kSamples], 5000);
 }
 
 }  // namespace

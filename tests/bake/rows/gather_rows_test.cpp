@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "bake/receivers/body_points.h"
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/rows/shared_batches.h"
 #include "bake/scene/inspect_scene.h"
 #include "formats/opal/cubemap.h"
 #include "tests/bake/single/single_support.h"
@@ -91,6 +94,53 @@ TEST(GatherRows, RowsDoNotDependOnTheMemoryOfABatch) {
     EXPECT_EQ(whole.code16, cut.code16);
     EXPECT_EQ(whole.average_code, cut.average_code);
     EXPECT_EQ(whole.detail_scale, cut.detail_scale);
+}
+
+// Three balls of one medium: two share a batch, and the third, for which there is no room, has its
+// own.
+TEST(GatherRows, RowsOfSetsThatShareABatchAreThoseOfEachAlone) {
+    std::vector<formats::Primitive> balls;
+    for (int i = 0; i < 3; ++i) {
+        balls.push_back(tests::make_sphere(2, 1, {2.5f * static_cast<float>(i), 0, 0}));
+    }
+    const formats::Scene scene = tests::make_translucent_scene(balls, make_grey_medium(6, 0.3f));
+    Knobs knobs = knobs_of(8, 8);
+    knobs.coefficients = kAllCoefficients;
+    knobs.effects = {"single"};
+    const SceneFacts facts = inspect_scene(scene);
+    const auto rays = RayScene::build(scene, 1), sky = RayScene::build({}, 1);
+    const std::vector<Receiver> outside = make_vertex_receivers(scene);
+    const std::vector<BodyPoint> inside = make_body_points(scene, outside);
+    const std::vector<ReceiverSet> sets = make_vertex_sets(scene, outside, inside);
+    const BakeInputs bake{all_effects(), scene, facts, *rays, *sky, sets};
+    std::vector<SubjectState> subjects =
+        begin_subjects(bake, plan_bake(scene, facts, knobs), knobs);
+    StageLog log;
+    const Context context;
+    run_step(Step::prepare, bake, knobs, context, subjects, log);
+    const RowEncoder encoder = make_row_encoder(8, kAllCoefficients, 16);
+    const std::size_t a_row = 384 * 2;  // packed, one band
+    SharedBatches batches(bake, subjects, knobs, context, 5 * sets[0].size() / 2 * a_row);
+    for (std::size_t s = 0; s < sets.size(); ++s) {
+        std::uint64_t traced = 0, traced_alone = 0;
+        const SharedBatches::Found found = batches.find(s, traced);
+        EXPECT_EQ(found.gatherers != nullptr, s < 2) << s;
+        RowJob job{sets[s], subjects[0].layout, encoder};
+        const auto gather = [&](std::uint64_t& counted) {
+            return gather_rows(job, make_gatherers(bake, subjects[0], knobs, context), context,
+                               counted)
+                .rows;
+        };
+        const formats::SparseRows alone = gather(traced_alone);
+        job.shared = found.gatherers;
+        job.place = found.place;
+        const formats::SparseRows shared = gather(traced);
+        EXPECT_EQ(shared.row_offset, alone.row_offset) << s;
+        EXPECT_EQ(shared.index16, alone.index16) << s;
+        EXPECT_EQ(shared.code16, alone.code16) << s;
+        EXPECT_EQ(shared.average_code, alone.average_code) << s;
+        EXPECT_EQ(shared.detail_scale, alone.detail_scale) << s;
+    }
 }
 
 TEST(GatherRows, RowsStandAsReceiversAreGivenInWhateverOrder) {
