@@ -15,14 +15,14 @@ void GlossyLight::make(GlNames& names) {
     cells_ = names.make_table_texture();
     suns_ = names.make_table_texture();
     albedo_ = names.make_table_texture();
-    upload_table(cells_, 2, std::span(black).first(8));
-    upload_table(suns_, 2, std::span(black).first(8));
+    fill_table(gl_, cells_, 2, std::span(black).first(8));
+    fill_table(gl_, suns_, 2, std::span(black).first(8));
     std::vector<float> albedo;
     albedo.reserve(4 * formats::ggx_albedo_table().size());
     for (const formats::GgxAlbedo& entry : formats::ggx_albedo_table()) {
         albedo.insert(albedo.end(), {entry.of_f0, entry.of_f90, 0, 0});
     }
-    upload_table(albedo_, formats::kAlbedoColumns, albedo);
+    fill_table(gl_, albedo_, formats::kAlbedoColumns, albedo);
 }
 
 void GlossyLight::upload(const GlossLight& light) {
@@ -41,16 +41,8 @@ void GlossyLight::upload(const GlossLight& light) {
     }
     std::vector<float> suns = make_sun_table(light);
     if (suns.empty()) suns.resize(8);  // one that lights nothing
-    upload_table(cells_, 2, make_cell_table(light));
-    upload_table(suns_, 2, suns);
-}
-
-void GlossyLight::upload_table(GLuint texture, std::uint32_t width,
-                               std::span<const float> rgba) const {
-    gl_.BindTexture(GL_TEXTURE_2D, texture);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(width),
-                   static_cast<GLsizei>(rgba.size() / 4 / width), 0, GL_RGBA, GL_FLOAT,
-                   rgba.data());
+    fill_table(gl_, cells_, 2, make_cell_table(light));
+    fill_table(gl_, suns_, 2, suns);
 }
 
 }  // namespace opaline::runtime

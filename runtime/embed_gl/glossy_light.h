@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "runtime/embed_gl/gl_names.h"
 #include "runtime/gloss_light.h"
 
@@ -29,8 +26,6 @@ class GlossyLight {
     GLuint albedo() const { return albedo_; }
 
   private:
-    void upload_table(GLuint texture, std::uint32_t width, std::span<const float> rgba) const;
-
     const GlFunctions& gl_;
     GLuint maps_ = 0, cells_ = 0, suns_ = 0, albedo_ = 0;
 };

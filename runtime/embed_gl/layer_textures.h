@@ -26,6 +26,7 @@ class LayerTextures {
 
     bool is_shown() const { return block_ != 0; }
     const LayerKind& kind() const { return kind_; }
+    const LayerPlaces& places() const { return places_; }  ///< in the light shown
 
     GLuint block() const { return block_; }
     GLuint table_values() const { return table_values_.name(); }

@@ -80,7 +80,6 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
     }
     batches_ = std::move(batches).value();
     alignment_ = limits.alignment;
-    max_block_bytes_ = limits.max_block_bytes;
     cubemap_size_ = asset.cubemap_size;
     vertices_ = asset.receivers();
     code_bits_ = asset.transport.code_bits;
@@ -116,7 +115,7 @@ opaline_status Relight::make_dot_program(std::uint32_t bands, bool keeps_sign, G
                                      define("BANDS", bands) + define("CODE_BITS", code_bits_) +
                                      define("INDEX_BYTES", index_bytes_) +
                                      (keeps_sign ? "#define KEEPS_SIGN\n" : ""),
-                                 dot_comp_text);
+                                 {{GL_COMPUTE_SHADER, dot_comp_text}});
     return program != 0 ? OPALINE_OK : OPALINE_GL_REFUSED;
 }
 
@@ -138,12 +137,13 @@ opaline_status Relight::make_programs(GlNames& names) {
                                          define("HARMONICS", harmonics) +
                                              (sum.is_separate ? "#define SEPARATE\n" : "") +
                                              (sum.is_sheet ? "#define SHEET\n" : ""),
-                                         view_text.c_str());
+                                         {{GL_COMPUTE_SHADER, view_text.c_str()}});
         if (sum.program == 0) return OPALINE_GL_REFUSED;
         sums_.push_back(sum);
     }
     if (values_ != 0) {
-        emitter_program_ = names.make_program("emitters", "", emitters_comp_text);
+        emitter_program_ =
+            names.make_program("emitters", "", {{GL_COMPUTE_SHADER, emitters_comp_text}});
         if (emitter_program_ == 0) return OPALINE_GL_REFUSED;
     }
     return OPALINE_OK;

@@ -25,8 +25,8 @@ class VolumeTextures {
 
     /// Precondition: `light` is of these volumes.
     opaline_status upload(const VolumeLight& light);
-    /// [m, world]
-    void look_from(formats::Vec3 eye);
+    /// [m, world]; distances of the shader are in units of which a metre has so many.
+    void look_from(formats::Vec3 eye, double units_per_metre = 1);
 
     std::size_t size() const { return records_.size(); }
     std::uint32_t terms() const { return terms_; }
@@ -51,9 +51,10 @@ class VolumeTextures {
     const GlFunctions& gl_;
     std::vector<formats::VolumeRecord> records_;
     std::vector<Entry> entry_;
-    std::vector<VolumeLight::Part> part_;
+    VolumeLight light_;  // its coefficients are on the GPU
     std::vector<formats::GlowRecord> glow_;
     formats::Vec3 eye_;
+    double units_per_metre_ = 1;
     std::uint32_t terms_ = 1;
     GLuint block_ = 0;
     TexelLines brick_numbers_{gl_, kWordTexel}, density_codes_{gl_, kWordTexel};
