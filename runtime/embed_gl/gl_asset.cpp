@@ -26,11 +26,7 @@ opaline_status GlAsset::upload(const formats::AssetView& asset, std::uint32_t fl
     mirrored.make(asset, names);
     if (specular_needs(asset).gloss) {
         gloss.assign(asset.gloss.begin(), asset.gloss.end());
-        glossy.make(names);
-        objects.light_maps = glossy.maps();
-        objects.cells = glossy.cells();
-        objects.sun_table = glossy.suns();
-        objects.albedo = glossy.albedo();
+        glossy.make(names, objects);
     }
     if ((flags & OPALINE_GL_WITH_MESH) != 0) upload_mesh(asset, names, objects);
     if ((flags & OPALINE_GL_WITH_IMAGES) != 0) status = images.make(asset, names);

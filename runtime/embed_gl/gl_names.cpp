@@ -111,6 +111,14 @@ void fill_table(const GlFunctions& gl, GLuint texture, std::uint32_t width,
                   static_cast<GLsizei>(rgba.size() / 4 / width), 0, GL_RGBA, GL_FLOAT, rgba.data());
 }
 
+void fill_faces(const GlFunctions& gl, GLuint texture, std::size_t level, std::uint32_t size,
+                const float* rgb) {
+    const auto n = static_cast<GLsizei>(size);
+    gl.BindTexture(GL_TEXTURE_2D_ARRAY, texture);
+    gl.TexImage3D(GL_TEXTURE_2D_ARRAY, static_cast<GLint>(level), GL_RGB32F, n, n, 6, 0, GL_RGB,
+                  GL_FLOAT, rgb);
+}
+
 void clear_buffer(const GlFunctions& gl, GLuint buffer, std::size_t size) {
     const std::vector<std::byte> zeros(std::min(kPiece, padded(size)));
     for (std::size_t at = 0; at < padded(size); at += zeros.size()) {

@@ -61,6 +61,9 @@ void fill_buffer(const GlFunctions& gl, GLuint buffer, std::size_t offset,
 /// Makes a 2D texture one of RGBA32F, `width` texels a row.
 void fill_table(const GlFunctions& gl, GLuint texture, std::uint32_t width,
                 std::span<const float> rgba);
+/// Makes a level of a 2D array texture six layers of RGB32F.
+void fill_faces(const GlFunctions& gl, GLuint texture, std::size_t level, std::uint32_t size,
+                const float* rgb);
 /// Zeros.
 void clear_buffer(const GlFunctions& gl, GLuint buffer, std::size_t size);
 

@@ -29,16 +29,8 @@ class VolumeTextures {
     void look_from(formats::Vec3 eye, double units_per_metre = 1);
 
     std::size_t size() const { return records_.size(); }
-    std::uint32_t terms() const { return terms_; }
-
-    GLuint block() const { return block_; }
-    GLuint brick_numbers() const { return brick_numbers_.name(); }
-    GLuint density_codes() const { return density_codes_.name(); }
-    GLuint corner_numbers() const { return corner_numbers_.name(); }
-    GLuint node_light() const { return node_light_.name(); }
-    GLuint phase_entries() const { return phase_entries_.name(); }
-    /// pack_glow; 0 where no volume has light of its own.
-    GLuint glow_words() const { return glow_words_.name(); }
+    /// Names, and what shaders are compiled for; all names are 0 where there are no volumes.
+    const opaline_gl_volumes& objects() const { return objects_; }
 
   private:
     struct Entry {
@@ -55,8 +47,7 @@ class VolumeTextures {
     std::vector<formats::GlowRecord> glow_;
     formats::Vec3 eye_;
     double units_per_metre_ = 1;
-    std::uint32_t terms_ = 1;
-    GLuint block_ = 0;
+    opaline_gl_volumes objects_{};
     TexelLines brick_numbers_{gl_, kWordTexel}, density_codes_{gl_, kWordTexel};
     TexelLines corner_numbers_{gl_, kWordTexel}, phase_entries_{gl_, kFloatTexel};
     TexelLines node_light_{gl_, kColorTexel}, glow_words_{gl_, kWordTexel};

@@ -81,7 +81,7 @@ formats::Result<DrawPrograms> make_draw_programs(const formats::AssetView& asset
     if (!surfaces) return surfaces.error();
     programs.surfaces = std::move(surfaces).value();
     if (gl.volumes.size() > 0) {
-        const auto made = make_volume_program(gl.names, gl.volumes, false);
+        const auto made = make_volume_program(gl.names, gl.volumes.objects(), false);
         if (!made) return made.error();
         programs.volumes = *made;
     }

@@ -21,14 +21,12 @@ enum Uniform : GLint {
     kShowsSky
 };
 
-void bind_layer(const LayerTextures& layer) {
-    const std::array<GLuint, 3> pictures{layer.albedo_map(), layer.ground_light(),
-                                         layer.base_light()};
+void bind_layer(const opaline_gl_layer& layer) {
+    const std::array<GLuint, 3> pictures{layer.albedo_map, layer.ground_light, layer.base_light};
     glBindTextures(5, static_cast<GLsizei>(pictures.size()), pictures.data());
-    const std::array<GLuint, 3> lines{layer.table_values(), layer.sun_values(),
-                                      layer.thickness_values()};
+    const std::array<GLuint, 3> lines{layer.table_values, layer.sun_values, layer.thickness_values};
     glBindTextures(10, static_cast<GLsizei>(lines.size()), lines.data());
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, layer.block());
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, layer.block);
 }
 
 // Of a pixel [rad].
@@ -40,7 +38,7 @@ void use_see(const DrawScene& scene, GLuint program, const TileView& view) {
     glUseProgram(program);
     set_rays(view, program, kTileOrigin);
     bind_environment(scene.environment, scene.rotation, program, kEnvironment);
-    bind_layer(scene.gl.layer);
+    bind_layer(scene.gl.layer.objects());
     glUniform1f(kSpread, pixel_spread(scene, view));
     glUniform1f(kNearPlane, scene.camera.near_plane);
     glUniform1i(kSupersampling, static_cast<GLint>(scene.supersampling));

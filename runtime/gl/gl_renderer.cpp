@@ -89,7 +89,7 @@ formats::Status compile_layers(GlAsset& gl, const LayerKind& kind, DrawPrograms&
     const auto layers = make_layer_programs(gl.names, kind, has_volumes);
     if (!layers) return layers.error();
     if (has_volumes) {
-        const auto volumes = make_volume_program(gl.names, gl.volumes, true);
+        const auto volumes = make_volume_program(gl.names, gl.volumes.objects(), true);
         if (!volumes) return volumes.error();
         programs.volumes_around_layer = *volumes;
     }

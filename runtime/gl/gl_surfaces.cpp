@@ -191,9 +191,9 @@ void set_gloss(const DrawScene& scene, GLuint program, const formats::GlossRecor
     glProgramUniform1ui(program, kHasSpecular, has_any(scene.terms, TermSet::specular) ? 1u : 0u);
     glProgramUniform4f(program, kF0F90, gloss.f0.r, gloss.f0.g, gloss.f0.b, gloss.f90);
     glProgramUniform2f(program, kMetallicRoughness, gloss.metallic, gloss.roughness);
-    const GlossyLight& glossy = scene.gl.glossy;
-    glBindTextureUnit(2, glossy.maps());
-    const std::array<GLuint, 3> tables{glossy.cells(), glossy.suns(), glossy.albedo()};
+    const opaline_gl_objects& objects = scene.gl.objects;
+    glBindTextureUnit(2, objects.light_maps);
+    const std::array<GLuint, 3> tables{objects.cells, objects.sun_table, objects.albedo};
     glBindTextures(8, static_cast<GLsizei>(tables.size()), tables.data());
 }
 

@@ -21,26 +21,26 @@ enum Uniform : GLint {
 
 }  // namespace
 
-formats::Result<GLuint> make_volume_program(GlNames& names, const VolumeTextures& volumes,
+formats::Result<GLuint> make_volume_program(GlNames& names, const opaline_gl_volumes& volumes,
                                             bool layer) {
     const std::string text = std::string(volume_march_text) + harmonics_text + volumes_frag_text;
     const std::string defines =
-        "#define RECORDS_IN_BLOCK\n#define VOLUMES " + std::to_string(volumes.size()) +
-        "\n#define HARMONICS " + std::to_string(volumes.terms()) + "\n#define SUNS " +
+        "#define RECORDS_IN_BLOCK\n#define VOLUMES " + std::to_string(volumes.count) +
+        "\n#define HARMONICS " + std::to_string(volumes.terms) + "\n#define SUNS " +
         std::to_string(kMaxSuns) + "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) +
         "\n#define LAYER " + (layer ? "1" : "0") + "\n#define GLOW " +
-        (volumes.glow_words() != 0 ? "1" : "0") + "\n#define SHEET_TOLERANCE " +
+        std::to_string(volumes.glows) + "\n#define SHEET_TOLERANCE " +
         std::to_string(kSheetTolerance) + "\n";
     return make_program(names, "volumes", defines, screen_vert_text, text.c_str());
 }
 
 void draw_volumes_filtered(const DrawScene& scene, GLuint program, const TileView& view) {
-    const VolumeTextures& volumes = scene.gl.volumes;
-    const std::array<GLuint, 6> textures{volumes.brick_numbers(),  volumes.density_codes(),
-                                         volumes.corner_numbers(), volumes.node_light(),
-                                         volumes.phase_entries(),  volumes.glow_words()};
+    const opaline_gl_volumes& volumes = scene.gl.volumes.objects();
+    const std::array<GLuint, 6> textures{volumes.brick_numbers,  volumes.density_codes,
+                                         volumes.corner_numbers, volumes.node_light,
+                                         volumes.phase_entries,  volumes.glow_words};
     glBindTextures(4, static_cast<GLsizei>(textures.size()), textures.data());
-    glBindBufferBase(GL_UNIFORM_BUFFER, 0, volumes.block());
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, volumes.block);
     glUseProgram(program);
     glUniform1i(kSupersampling, static_cast<GLint>(scene.supersampling));
     set_rays(view, program, kTileOrigin);

@@ -7,7 +7,7 @@
 namespace opaline::runtime {
 
 /// `layer`: for pictures with a cloud layer. Errors: resource. Precondition: there are some.
-formats::Result<GLuint> make_volume_program(GlNames& names, const VolumeTextures& volumes,
+formats::Result<GLuint> make_volume_program(GlNames& names, const opaline_gl_volumes& volumes,
                                             bool layer);
 
 /// The box filter for a picture with volumes: composes them with the colour and depth of the
