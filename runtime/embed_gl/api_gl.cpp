@@ -142,7 +142,7 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
         gl->relight.light(light->vector(), gl->names);
         gl->relight.dot({light->emitters, false});
         gl->mirror(light->specular());
-        gl->images.relight(light->vector());
+        gl->images.relight(light->vector(), gl->primitives);
         gl->is_relit = true;
         show(*gl);
         return runtime::check_errors(gl->gl, "relighting");

@@ -18,6 +18,14 @@ std::size_t padded(std::size_t size) {
 
 }  // namespace
 
+std::string define(const char* name, const std::string& value) {
+    return std::string("#define ") + name + " " + value + "\n";
+}
+
+std::string define(const char* name, std::size_t value) {
+    return define(name, std::to_string(value));
+}
+
 GLuint GlNames::make_buffer(std::size_t size, GLenum usage) {
     GLuint name = 0;
     gl_->GenBuffers(1, &name);

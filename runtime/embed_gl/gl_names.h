@@ -17,6 +17,10 @@ struct StageSource {
     const char* text = nullptr;
 };
 
+/// A line of a program's `defines`.
+std::string define(const char* name, const std::string& value = {});
+std::string define(const char* name, std::size_t value);
+
 /// Owner of GL objects of one context. They are deleted by `release`, which needs that context;
 /// without it they stay until the context goes. Everything here wants a SavedState around it.
 class GlNames {

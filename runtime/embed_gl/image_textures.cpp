@@ -97,23 +97,23 @@ opaline_status ImageTextures::make(const formats::AssetView& asset, GlNames& nam
 
 void ImageTextures::make_normal_maps(const formats::AssetView& asset, GlNames& names) {
     if (asset.normal_maps.empty()) return;
-    record_.assign(asset.primitives.begin(), asset.primitives.end());
-    map_record_.assign(asset.normal_maps.record.begin(), asset.normal_maps.record.end());
+    record_.assign(asset.normal_maps.record.begin(), asset.normal_maps.record.end());
     tangent_ = names.make_buffer_of(asset.normal_maps.tangent);
-    for (const formats::NormalMapRecord& record : map_record_) {
+    for (const formats::NormalMapRecord& record : record_) {
         opaline_gl_normal_map& map = normal_map_[record.primitive];
         map.image = find(record.image, record.wrap_u, record.wrap_v);
         map.scale = record.scale;
         map.tangent = tangent_;
-        const formats::Shading shading = record_[record.primitive].shading;
+        const formats::Shading shading = asset.primitives[record.primitive].shading;
         const bool two_sided =
             shading == formats::Shading::sheet && formats::sheet_shares_of(record).any();
         map.is_turned = two_sided ? 2 : shading == formats::Shading::diffuse ? 1 : 0;
     }
 }
 
-void ImageTextures::relight(const PartLights& lights) {
-    turned_ = make_turned_lights(lights, record_, map_record_);
+void ImageTextures::relight(const PartLights& lights,
+                            std::span<const formats::PrimitiveRecord> primitives) {
+    turned_ = make_turned_lights(lights, primitives, record_);
 }
 
 opaline_gl_normal_map ImageTextures::normal_map_of(std::uint32_t primitive) const {

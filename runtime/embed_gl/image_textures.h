@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "formats/opal/asset.h"
@@ -23,7 +24,7 @@ class ImageTextures {
     opaline_gl_images of(std::uint32_t primitive) const;
 
     /// The light of normal maps, where there are some.
-    void relight(const PartLights& lights);
+    void relight(const PartLights& lights, std::span<const formats::PrimitiveRecord> primitives);
     /// Of a primitive, but for struct_size; zeros where it has none.
     opaline_gl_normal_map normal_map_of(std::uint32_t primitive) const;
 
@@ -41,8 +42,7 @@ class ImageTextures {
     std::vector<opaline_gl_images> primitive_;
     std::vector<GLuint> texture_;
     std::map<std::uint32_t, opaline_gl_normal_map> normal_map_;  // of primitives; without light
-    std::vector<formats::PrimitiveRecord> record_;
-    std::vector<formats::NormalMapRecord> map_record_;
+    std::vector<formats::NormalMapRecord> record_;
     TurnedLights turned_;  // of the light that relit last
     GLuint vertex_alpha_ = 0, tangent_ = 0, srgb_table_ = 0;
 };

@@ -75,9 +75,6 @@ formats::Result<LayerPrograms> make_layer_programs(GlNames& names, const LayerKi
     const std::string see = std::string(cube_map_text) + arc_tangent_text + environment_text +
                             layer_tables_text + layer_march_text + layer_see_text +
                             layers_frag_text;
-    const auto define = [](const char* name, std::uint32_t value) {
-        return std::string("#define ") + name + " " + std::to_string(value) + "\n";
-    };
     const std::string defines = define("REPEAT", kind.repeats ? 1 : 0) +
                                 define("MODES", kind.modes) + define("GLOW", kind.glows ? 1 : 0) +
                                 define("SHEET", sheet ? 1 : 0);

@@ -194,7 +194,7 @@ formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& 
     gl.relight.light(lights, gl.names);
     state_->stats.light_seconds = clock.lap();
     gl.relight.dot(emitters);
-    gl.images.relight(lights);
+    gl.images.relight(lights, gl.primitives);
     state_->own = own_radiances(state_->asset, emitters);
     if (auto status = relight_gl_volumes(state_->volumes, gl.volumes,
                                          lights.light[lights.of_volumes], emitters);

@@ -105,10 +105,6 @@ bool has_view(SurfaceKind kind) {
     return kind[kTranslucent] || kind[kGlossy] || kind[kNormalMapped] || kind[kClear];
 }
 
-std::string define(const char* name, const std::string& value = {}) {
-    return std::string("#define ") + name + " " + value + "\n";
-}
-
 std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
     std::string text;
     for (std::size_t i = 0; i < kTraits; ++i) {
@@ -125,16 +121,15 @@ std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
 std::string fragment_text(SurfaceKind kind) {
     std::string text;
     if (has_image(kind)) {
-        text += define("WRAP_CLAMP", std::to_string(static_cast<int>(formats::Wrap::clamp))) +
-                define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
-                define("WRAP_NEAREST", std::to_string(formats::kNearestBit)) + image_text;
+        text += define("WRAP_CLAMP", static_cast<std::size_t>(formats::Wrap::clamp)) +
+                define("WRAP_MIRROR", static_cast<std::size_t>(formats::Wrap::mirror)) +
+                define("WRAP_NEAREST", formats::kNearestBit) + image_text;
     }
     text += cube_map_text;
     text += surface_text;
     if (kind[kGlossy]) {
-        text += define("LOBE_TAPS", std::to_string(kLobeTaps)) +
-                define("ALBEDO_ROWS", std::to_string(formats::kAlbedoRows)) +
-                define("ALBEDO_COLUMNS", std::to_string(formats::kAlbedoColumns)) +
+        text += define("LOBE_TAPS", kLobeTaps) + define("ALBEDO_ROWS", formats::kAlbedoRows) +
+                define("ALBEDO_COLUMNS", formats::kAlbedoColumns) +
                 define("NARROW_ROUGHNESS", std::to_string(kNarrowRoughness)) +
                 define("WIDE_ROUGHNESS", std::to_string(kWideRoughness)) + gloss_text;
     }

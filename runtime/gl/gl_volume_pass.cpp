@@ -24,13 +24,11 @@ enum Uniform : GLint {
 formats::Result<GLuint> make_volume_program(GlNames& names, const opaline_gl_volumes& volumes,
                                             bool layer) {
     const std::string text = std::string(volume_march_text) + harmonics_text + volumes_frag_text;
-    const std::string defines =
-        "#define RECORDS_IN_BLOCK\n#define VOLUMES " + std::to_string(volumes.count) +
-        "\n#define HARMONICS " + std::to_string(volumes.terms) + "\n#define SUNS " +
-        std::to_string(kMaxSuns) + "\n#define BRICK_WORDS " + std::to_string(kGlBrickWords) +
-        "\n#define LAYER " + (layer ? "1" : "0") + "\n#define GLOW " +
-        std::to_string(volumes.glows) + "\n#define SHEET_TOLERANCE " +
-        std::to_string(kSheetTolerance) + "\n";
+    const std::string defines = define("RECORDS_IN_BLOCK") + define("VOLUMES", volumes.count) +
+                                define("HARMONICS", volumes.terms) + define("SUNS", kMaxSuns) +
+                                define("BRICK_WORDS", kGlBrickWords) +
+                                define("LAYER", layer ? 1 : 0) + define("GLOW", volumes.glows) +
+                                define("SHEET_TOLERANCE", std::to_string(kSheetTolerance));
     return make_program(names, "volumes", defines, screen_vert_text, text.c_str());
 }
 
