@@ -10,11 +10,11 @@
 
 namespace opaline::runtime {
 
-// A cloud layer as layer_tables.glsl and what follows it read it; for the renderer too.
+// A cloud layer as layer_tables.glsl and what follows it read it.
 
 inline constexpr std::size_t kMaxLayerLevels = 16;  ///< of the thickness
 
-/// LayerSun and Layer of layer_tables.glsl, in std140 as in std430.
+/// LayerSun and Layer of layer_tables.glsl, in std140.
 struct ShaderSun {
     std::array<float, 4> direction_cosine{}, irradiance_radius{}, shadow{};
 };

@@ -28,7 +28,8 @@ void main() { result = marker; }
 )";
 
 opaline_status make_marker(opaline_gl& handle) {
-    handle.marker_program = handle.names.make_program("the context's mark", "", kMarkerText);
+    handle.marker_program =
+        handle.names.make_program("the context's mark", "", {{GL_COMPUTE_SHADER, kMarkerText}});
     if (handle.marker_program == 0) return OPALINE_GL_REFUSED;
     handle.marker = ++last_marker;
     handle.gl.ProgramUniform1ui(handle.marker_program, 0, handle.marker);
@@ -45,16 +46,6 @@ opaline_status make_texture(opaline_gl& handle, std::uint32_t receivers) {
     handle.objects.radiance_texture = handle.names.make_texture(kTextureWidth, rows);
     handle.objects.radiance_texture_width = kTextureWidth;
     return OPALINE_OK;
-}
-
-void upload_mesh(opaline_gl& handle, const formats::AssetView& asset) {
-    opaline_gl_objects& objects = handle.objects;
-    objects.position = handle.names.make_buffer_of(asset.position);
-    objects.normal = handle.names.make_buffer_of(asset.normal);
-    objects.base_color = handle.names.make_buffer_of(asset.base_color);
-    objects.triangle = handle.names.make_buffer_of(asset.index);
-    if (!asset.texcoord.empty()) objects.texcoord = handle.names.make_buffer_of(asset.texcoord);
-    if (!asset.openness.empty()) objects.openness = handle.names.make_buffer_of(asset.openness);
 }
 
 // The receivers [first, first + count) of one row of the texture, from the buffer that is bound.
@@ -78,44 +69,15 @@ void refresh_texture(const opaline_gl& handle) {
     if (rest > 0) copy_texels(gl, rows * kTextureWidth, rest, 1);
 }
 
-// Turning a light leaves its maps as they are.
-void upload_specular(opaline_gl& handle, const runtime::SpecularLight& light) {
-    handle.mirrored.turn(light.rotation);
-    if (light.id == handle.specular_id) return;
-    handle.mirrored.upload(light);
-    if (!handle.gloss.empty()) handle.glossy.upload(light.gloss);
-    handle.specular_id = light.id;
-}
-
 void show(opaline_gl& handle) {
     handle.relight.view(handle.eye, formats::TermSet::all);
     refresh_texture(handle);
 }
 
 opaline_status upload(opaline_gl& handle, const formats::AssetView& asset, std::uint32_t flags) {
-    handle.cubemap_size = asset.cubemap_size;
     handle.emitters = asset.emitters.size();
-    handle.objects.struct_size = sizeof(opaline_gl_objects);
     opaline_status status = make_marker(handle);
-    if (status == OPALINE_OK) status = handle.relight.upload(asset, {}, handle.names);
-    handle.objects.radiance = handle.relight.radiance();
-    handle.primitives.assign(asset.primitives.begin(), asset.primitives.end());
-    if (status == OPALINE_OK) handle.mirrored.make(asset, handle.names);
-    if (status == OPALINE_OK && runtime::specular_needs(asset).gloss) {
-        handle.gloss.assign(asset.gloss.begin(), asset.gloss.end());
-        handle.glossy.make(handle.names);
-        handle.objects.light_maps = handle.glossy.maps();
-        handle.objects.cells = handle.glossy.cells();
-        handle.objects.sun_table = handle.glossy.suns();
-        handle.objects.albedo = handle.glossy.albedo();
-    }
-    if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_MESH) != 0) upload_mesh(handle, asset);
-    if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_IMAGES) != 0) {
-        status = handle.images.make(asset, handle.names);
-    }
-    if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_VOLUMES) != 0) {
-        status = handle.volumes.make(asset.volumes, handle.names);
-    }
+    if (status == OPALINE_OK) status = handle.upload(asset, flags, {});
     if (status == OPALINE_OK && (flags & OPALINE_GL_WITH_TEXTURE) != 0) {
         status = make_texture(handle, asset.receivers());
         if (status == OPALINE_OK) refresh_texture(handle);
@@ -169,7 +131,8 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
     if (gl == nullptr || light == nullptr) return null_argument();
     const runtime::Reading reading(light->users);
     if (!reading) return busy();
-    if (const char* const fault = fault_of_light(*light, gl->cubemap_size, gl->emitters)) {
+    if (const char* const fault =
+            fault_of_light(*light, gl->relight.cubemap_size(), gl->emitters)) {
         return invalid(fault);
     }
     const opaline_status status = check_context(*gl);
@@ -178,8 +141,8 @@ opaline_status opaline_gl_relight(opaline_gl* gl, const opaline_light* light) {
         const runtime::SavedState saved(gl->gl);
         gl->relight.light(light->vector(), gl->names);
         gl->relight.dot({light->emitters, false});
-        upload_specular(*gl, light->specular());
-        gl->images.relight(light->vector());
+        gl->mirror(light->specular());
+        gl->images.relight(light->vector(), gl->primitives);
         gl->is_relit = true;
         show(*gl);
         return runtime::check_errors(gl->gl, "relighting");

@@ -167,18 +167,8 @@ opaline_status opaline_gl_show_layer(opaline_gl* gl, const opaline_asset* asset,
 
 opaline_status opaline_gl_get_layer(const opaline_gl* gl, opaline_gl_layer* layer) {
     if (const char* const fault = fault_of_output(gl, layer)) return invalid(fault);
-    const runtime::LayerTextures& made = gl->layer;
-    *layer = {sizeof(opaline_gl_layer),
-              made.kind().repeats ? 1u : 0u,
-              made.kind().modes,
-              made.kind().glows ? 1u : 0u,
-              made.block(),
-              made.table_values(),
-              made.sun_values(),
-              made.thickness_values(),
-              made.albedo_map(),
-              made.ground_light(),
-              made.base_light()};
+    *layer = gl->layer.objects();
+    layer->struct_size = sizeof(opaline_gl_layer);
     return OPALINE_OK;
 }
 

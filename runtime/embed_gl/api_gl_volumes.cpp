@@ -35,18 +35,8 @@ opaline_status opaline_gl_get_volumes(const opaline_gl* gl, opaline_gl_volumes* 
     if (size != sizeof(opaline_gl_volumes) && size != offsetof(opaline_gl_volumes, glows)) {
         return invalid("struct_size is not one this library knows");
     }
-    const runtime::VolumeTextures& made = gl->volumes;
-    const opaline_gl_volumes found{size,
-                                   static_cast<std::uint32_t>(made.size()),
-                                   made.terms(),
-                                   made.block(),
-                                   made.brick_numbers(),
-                                   made.density_codes(),
-                                   made.corner_numbers(),
-                                   made.node_light(),
-                                   made.phase_entries(),
-                                   made.glow_words() != 0 ? 1u : 0u,
-                                   made.glow_words()};
+    opaline_gl_volumes found = gl->volumes.objects();
+    found.struct_size = size;
     std::memcpy(volumes, &found, size);
     return OPALINE_OK;
 }

@@ -36,8 +36,6 @@ opaline_gl_loader find_loader() {
 // Bounded: a lost context reports errors for ever.
 constexpr int kMostErrors = 16;
 
-}  // namespace
-
 const char* gl_error_name(GLenum error) {
     switch (error) {
         case GL_INVALID_ENUM:
@@ -56,6 +54,8 @@ const char* gl_error_name(GLenum error) {
             return "unknown error";
     }
 }
+
+}  // namespace
 
 const char* GlFunctions::shader_head() const {
     return is_es ? "#version 310 es\nprecision highp float;\nprecision highp int;\n"

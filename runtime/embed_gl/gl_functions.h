@@ -69,9 +69,6 @@ struct GlFunctions {
 /// current. Statuses: as opaline_gl_create.
 opaline_status load_gl_functions(opaline_gl_loader loader, GlFunctions& gl);
 
-/// "invalid value" and the like; never null.
-const char* gl_error_name(GLenum error);
-
 /// ok, or the status of the GL errors since the last check, and what was being done.
 opaline_status check_errors(const GlFunctions& gl, const char* doing);
 

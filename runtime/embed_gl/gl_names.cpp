@@ -18,13 +18,20 @@ std::size_t padded(std::size_t size) {
 
 }  // namespace
 
+std::string define(const char* name, const std::string& value) {
+    return std::string("#define ") + name + " " + value + "\n";
+}
+
+std::string define(const char* name, std::size_t value) {
+    return define(name, std::to_string(value));
+}
+
 GLuint GlNames::make_buffer(std::size_t size, GLenum usage) {
     GLuint name = 0;
     gl_->GenBuffers(1, &name);
     buffers_.push_back(name);
     gl_->BindBuffer(GL_COPY_WRITE_BUFFER, name);
     gl_->BufferData(GL_COPY_WRITE_BUFFER, static_cast<GLsizeiptr>(padded(size)), nullptr, usage);
-    resident_ += padded(size);
     return name;
 }
 
@@ -34,27 +41,32 @@ GLuint GlNames::make_buffer(std::span<const std::byte> bytes) {
     return name;
 }
 
-GLuint GlNames::make_program(const char* name, const std::string& defines, const char* text) {
+GLuint GlNames::make_program(const char* name, const std::string& defines,
+                             std::initializer_list<StageSource> stages) {
     std::array<char, 300> log{};
-    const GLuint program = gl_->CreateProgram(), shader = gl_->CreateShader(GL_COMPUTE_SHADER);
+    const GLuint program = gl_->CreateProgram();
     programs_.push_back(program);
-    const std::array<const char*, 3> parts{gl_->shader_head(), defines.c_str(), text};
-    gl_->ShaderSource(shader, static_cast<GLsizei>(parts.size()), parts.data(), nullptr);
-    gl_->CompileShader(shader);
-    GLint is_done = GL_FALSE;
-    gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &is_done);
+    GLint is_done = GL_TRUE;
+    for (const StageSource& source : stages) {
+        const GLuint shader = gl_->CreateShader(source.stage);
+        const std::array<const char*, 3> parts{gl_->shader_head(), defines.c_str(), source.text};
+        gl_->ShaderSource(shader, static_cast<GLsizei>(parts.size()), parts.data(), nullptr);
+        gl_->CompileShader(shader);
+        gl_->GetShaderiv(shader, GL_COMPILE_STATUS, &is_done);
+        if (is_done == GL_TRUE) {
+            gl_->AttachShader(program, shader);
+        } else {
+            gl_->GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+        }
+        gl_->DeleteShader(shader);  // with the program, where it is attached
+        if (is_done != GL_TRUE) break;
+    }
     if (is_done == GL_TRUE) {
-        gl_->AttachShader(program, shader);
         gl_->LinkProgram(program);
         gl_->GetProgramiv(program, GL_LINK_STATUS, &is_done);
-        if (is_done != GL_TRUE) {
-            gl_->GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
-        }
-    } else {
-        gl_->GetShaderInfoLog(shader, static_cast<GLsizei>(log.size()), nullptr, log.data());
+        if (is_done == GL_TRUE) return program;
+        gl_->GetProgramInfoLog(program, static_cast<GLsizei>(log.size()), nullptr, log.data());
     }
-    gl_->DeleteShader(shader);  // with the program, where it is attached
-    if (is_done == GL_TRUE) return program;
     std::array<char, 400> message{};
     std::snprintf(message.data(), message.size(), "the driver refuses the shader of %s: %s", name,
                   log.data());
@@ -98,6 +110,21 @@ void fill_buffer(const GlFunctions& gl, GLuint buffer, std::size_t offset,
                          static_cast<GLsizeiptr>(std::min(kPiece, bytes.size() - at)),
                          bytes.data() + at);
     }
+}
+
+void fill_table(const GlFunctions& gl, GLuint texture, std::uint32_t width,
+                std::span<const float> rgba) {
+    gl.BindTexture(GL_TEXTURE_2D, texture);
+    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(width),
+                  static_cast<GLsizei>(rgba.size() / 4 / width), 0, GL_RGBA, GL_FLOAT, rgba.data());
+}
+
+void fill_faces(const GlFunctions& gl, GLuint texture, std::size_t level, std::uint32_t size,
+                const float* rgb) {
+    const auto n = static_cast<GLsizei>(size);
+    gl.BindTexture(GL_TEXTURE_2D_ARRAY, texture);
+    gl.TexImage3D(GL_TEXTURE_2D_ARRAY, static_cast<GLint>(level), GL_RGB32F, n, n, 6, 0, GL_RGB,
+                  GL_FLOAT, rgb);
 }
 
 void clear_buffer(const GlFunctions& gl, GLuint buffer, std::size_t size) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,6 +10,16 @@
 #include "runtime/embed_gl/gl_functions.h"
 
 namespace opaline::runtime {
+
+/// A shader of a program: the text follows GlFunctions::shader_head and the program's `defines`.
+struct StageSource {
+    GLenum stage = 0;
+    const char* text = nullptr;
+};
+
+/// A line of a program's `defines`.
+std::string define(const char* name, const std::string& value = {});
+std::string define(const char* name, std::size_t value);
 
 /// Owner of GL objects of one context. They are deleted by `release`, which needs that context;
 /// without it they stay until the context goes. Everything here wants a SavedState around it.
@@ -25,9 +36,9 @@ class GlNames {
         return make_buffer(std::as_bytes(values));
     }
 
-    /// One compute shader, after GlFunctions::shader_head and `defines`. 0: the driver refuses it,
-    /// opaline_last_error says why.
-    GLuint make_program(const char* name, const std::string& defines, const char* text);
+    /// 0: the driver refuses it, opaline_last_error says why.
+    GLuint make_program(const char* name, const std::string& defines,
+                        std::initializer_list<StageSource> stages);
 
     /// RGBA32F, nearest filter.
     GLuint make_texture(std::uint32_t width, std::uint32_t height);
@@ -38,19 +49,25 @@ class GlNames {
 
     void release();
 
-    std::size_t resident() const { return resident_; }  ///< in buffers [bytes]
+    std::span<const GLuint> buffers() const { return buffers_; }
+    std::span<const GLuint> textures() const { return textures_; }
 
   private:
     GLuint make_texture_of(GLenum target);
 
     const GlFunctions* gl_;
-    std::size_t resident_ = 0;
     std::vector<GLuint> buffers_, programs_, textures_;
 };
 
 /// Copies into a part of a buffer.
 void fill_buffer(const GlFunctions& gl, GLuint buffer, std::size_t offset,
                  std::span<const std::byte> bytes);
+/// Makes a 2D texture one of RGBA32F, `width` texels a row.
+void fill_table(const GlFunctions& gl, GLuint texture, std::uint32_t width,
+                std::span<const float> rgba);
+/// Makes a level of a 2D array texture six layers of RGB32F.
+void fill_faces(const GlFunctions& gl, GLuint texture, std::size_t level, std::uint32_t size,
+                const float* rgb);
 /// Zeros.
 void clear_buffer(const GlFunctions& gl, GLuint buffer, std::size_t size);
 

@@ -1,5 +1,7 @@
 #include "runtime/embed_gl/glossy_light.h"
 
+#include <array>
+#include <span>
 #include <vector>
 
 #include "formats/opal/ggx_albedo.h"
@@ -7,50 +9,34 @@
 
 namespace opaline::runtime {
 
-void GlossyLight::make(GlNames& names) {
-    maps_ = names.make_array_texture();
+void GlossyLight::make(GlNames& names, opaline_gl_objects& objects) {
+    maps_ = objects.light_maps = names.make_array_texture();
     gl_.TexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
-    const std::vector<float> black(std::size_t{4} * 6);
-    gl_.TexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, 1, 1, 6, 0, GL_RGBA, GL_FLOAT, black.data());
-    cells_ = names.make_table_texture();
-    suns_ = names.make_table_texture();
-    albedo_ = names.make_table_texture();
-    upload_table(cells_, 2, std::span(black).first(8));
-    upload_table(suns_, 2, std::span(black).first(8));
+    constexpr std::array<float, 3 * 6> kBlack{};
+    fill_faces(gl_, maps_, 0, 1, kBlack.data());
+    cells_ = objects.cells = names.make_table_texture();
+    suns_ = objects.sun_table = names.make_table_texture();
+    objects.albedo = names.make_table_texture();
+    fill_table(gl_, cells_, 2, std::span(kBlack).first(8));
+    fill_table(gl_, suns_, 2, std::span(kBlack).first(8));
     std::vector<float> albedo;
     albedo.reserve(4 * formats::ggx_albedo_table().size());
     for (const formats::GgxAlbedo& entry : formats::ggx_albedo_table()) {
         albedo.insert(albedo.end(), {entry.of_f0, entry.of_f90, 0, 0});
     }
-    upload_table(albedo_, formats::kAlbedoColumns, albedo);
+    fill_table(gl_, objects.albedo, formats::kAlbedoColumns, albedo);
 }
 
 void GlossyLight::upload(const GlossLight& light) {
     if (light.map.empty()) return;
-    gl_.BindTexture(GL_TEXTURE_2D_ARRAY, maps_);
-    std::vector<float> rgba;
     for (std::size_t level = 0; level < light.map.size(); ++level) {
         const formats::Environment& map = light.map[level];
-        rgba.clear();
-        for (const formats::Rgb pixel : map.pixel) {
-            rgba.insert(rgba.end(), {pixel.r, pixel.g, pixel.b, 0});
-        }
-        const auto n = static_cast<GLsizei>(map.width);
-        gl_.TexImage3D(GL_TEXTURE_2D_ARRAY, static_cast<GLint>(level), GL_RGBA32F, n, n, 6, 0,
-                       GL_RGBA, GL_FLOAT, rgba.data());
+        fill_faces(gl_, maps_, level, map.width, &map.pixel.front().r);
     }
     std::vector<float> suns = make_sun_table(light);
     if (suns.empty()) suns.resize(8);  // one that lights nothing
-    upload_table(cells_, 2, make_cell_table(light));
-    upload_table(suns_, 2, suns);
-}
-
-void GlossyLight::upload_table(GLuint texture, std::uint32_t width,
-                               std::span<const float> rgba) const {
-    gl_.BindTexture(GL_TEXTURE_2D, texture);
-    gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(width),
-                   static_cast<GLsizei>(rgba.size() / 4 / width), 0, GL_RGBA, GL_FLOAT,
-                   rgba.data());
+    fill_table(gl_, cells_, 2, make_cell_table(light));
+    fill_table(gl_, suns_, 2, suns);
 }
 
 }  // namespace opaline::runtime

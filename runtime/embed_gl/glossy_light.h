@@ -1,8 +1,5 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
-
 #include "runtime/embed_gl/gl_names.h"
 #include "runtime/gloss_light.h"
 
@@ -14,25 +11,18 @@ class GlossyLight {
   public:
     explicit GlossyLight(const GlFunctions& gl) : gl_(gl) {}
 
-    /// Black, with the table of albedos.
-    void make(GlNames& names);
+    /// Black, with the table of albedos. Notes the names in `objects`:
+    /// light_maps: a 2D array of six layers, half as wide at each level;
+    /// cells, sun_table: two texels a cell, and a sun, as Cell and Sun of gloss.glsl, a row each;
+    /// albedo: formats::ggx_albedo_table, in the first two bands.
+    void make(GlNames& names, opaline_gl_objects& objects);
 
     /// Copies the light; one that was prepared for no glossy surface leaves things as they are.
     void upload(const GlossLight& light);
 
-    /// A 2D array of six layers, half as wide at each level.
-    GLuint maps() const { return maps_; }
-    /// Of two texels a cell, and a sun: as Cell and Sun of gloss.glsl, a row each.
-    GLuint cells() const { return cells_; }
-    GLuint suns() const { return suns_; }
-    /// formats::ggx_albedo_table, in the first two bands.
-    GLuint albedo() const { return albedo_; }
-
   private:
-    void upload_table(GLuint texture, std::uint32_t width, std::span<const float> rgba) const;
-
     const GlFunctions& gl_;
-    GLuint maps_ = 0, cells_ = 0, suns_ = 0, albedo_ = 0;
+    GLuint maps_ = 0, cells_ = 0, suns_ = 0;
 };
 
 }  // namespace opaline::runtime

@@ -58,11 +58,12 @@ opaline_status ImageTextures::make(const formats::AssetView& asset, GlNames& nam
     for (std::size_t code = 0; code < linear.size(); ++code) {
         linear[code] = linear_from_srgb(static_cast<std::uint8_t>(code));
     }
-    const GLuint table = names.make_table_texture();
+    srgb_table_ = names.make_table_texture();
     gl_.TexImage2D(GL_TEXTURE_2D, 0, GL_R32F, static_cast<GLsizei>(linear.size()), 1, 0, GL_RED,
                    GL_FLOAT, linear.data());
-    const GLuint vertex_alpha =
-        asset.holes.vertex_alpha.empty() ? 0 : names.make_buffer_of(asset.holes.vertex_alpha);
+    if (!asset.holes.vertex_alpha.empty()) {
+        vertex_alpha_ = names.make_buffer_of(asset.holes.vertex_alpha);
+    }
     for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
         const formats::PrimitiveRecord& record = asset.primitives[p];
         opaline_gl_images images{};
@@ -80,14 +81,14 @@ opaline_status ImageTextures::make(const formats::AssetView& asset, GlNames& nam
             images.alpha_factor = hole->alpha;
             images.cutoff_mode[0] = hole->cutoff;
             images.cutoff_mode[1] = static_cast<float>(hole->mode);
-            images.vertex_alpha = vertex_alpha;
+            images.vertex_alpha = vertex_alpha_;
             if (hole->clear != 0) {  // hosts know no angle: as seen along the normal
                 const formats::ClearShare clear = formats::clear_share_of(*hole);
                 images.alpha_factor *=
                     1 - clear.share * formats::thin_glass_transmittance(1, clear.eta);
             }
         }
-        images.srgb_table = table;
+        images.srgb_table = srgb_table_;
         primitive_.push_back(images);
     }
     make_normal_maps(asset, names);
@@ -96,44 +97,38 @@ opaline_status ImageTextures::make(const formats::AssetView& asset, GlNames& nam
 
 void ImageTextures::make_normal_maps(const formats::AssetView& asset, GlNames& names) {
     if (asset.normal_maps.empty()) return;
-    const GLuint tangent = names.make_buffer_of(asset.normal_maps.tangent);
-    for (const formats::NormalMapRecord& record : asset.normal_maps.record) {
+    record_.assign(asset.normal_maps.record.begin(), asset.normal_maps.record.end());
+    tangent_ = names.make_buffer_of(asset.normal_maps.tangent);
+    for (const formats::NormalMapRecord& record : record_) {
         opaline_gl_normal_map& map = normal_map_[record.primitive];
         map.image = find(record.image, record.wrap_u, record.wrap_v);
         map.scale = record.scale;
-        map.tangent = tangent;
+        map.tangent = tangent_;
         const formats::Shading shading = asset.primitives[record.primitive].shading;
-        const formats::SheetShares shares = formats::sheet_shares_of(record);
-        if (shading == formats::Shading::sheet && shares.any()) {
-            sheet_[record.primitive] = shares;
-            map.is_turned = 2;
-        } else {
-            map.is_turned = shading == formats::Shading::diffuse ? 1 : 0;
-        }
+        const bool two_sided =
+            shading == formats::Shading::sheet && formats::sheet_shares_of(record).any();
+        map.is_turned = two_sided ? 2 : shading == formats::Shading::diffuse ? 1 : 0;
     }
 }
 
-void ImageTextures::relight(const LightVector& light) {
-    if (normal_map_.empty()) return;
-    turned_ = make_turned_light(light);
-    for (const auto& [primitive, shares] : sheet_) {
-        turned_sheet_[primitive] = turned_light_of_sheet(turned_, shares);
-    }
+void ImageTextures::relight(const PartLights& lights,
+                            std::span<const formats::PrimitiveRecord> primitives) {
+    turned_ = make_turned_lights(lights, primitives, record_);
 }
 
 opaline_gl_normal_map ImageTextures::normal_map_of(std::uint32_t primitive) const {
     const auto found = normal_map_.find(primitive);
     if (found == normal_map_.end()) return {};
     opaline_gl_normal_map map = found->second;
-    const auto sheet = turned_sheet_.find(primitive);
-    const TurnedLight& turned = sheet == turned_sheet_.end() ? turned_ : sheet->second;
-    for (std::size_t k = 0; k < turned.harmonics.size(); ++k) {
-        put(turned.harmonics[k], map.harmonics[k]);
+    const TurnedLight* const turned = turned_.of(primitive);
+    if (turned == nullptr) return map;
+    for (std::size_t k = 0; k < turned->harmonics.size(); ++k) {
+        put(turned->harmonics[k], map.harmonics[k]);
     }
-    put(turned.least, map.least);
-    map.suns = static_cast<std::int32_t>(turned.suns.size());
-    for (std::size_t i = 0; i < turned.suns.size(); ++i) {
-        const TurnedLight::Sun& sun = turned.suns[i];
+    put(turned->least, map.least);
+    map.suns = static_cast<std::int32_t>(turned->suns.size());
+    for (std::size_t i = 0; i < turned->suns.size(); ++i) {
+        const TurnedLight::Sun& sun = turned->suns[i];
         put({sun.direction.x, sun.direction.y, sun.direction.z}, map.sun_direction[i]);
         put(sun.light, map.sun_light[i]);
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "formats/opal/asset.h"
@@ -23,9 +24,14 @@ class ImageTextures {
     opaline_gl_images of(std::uint32_t primitive) const;
 
     /// The light of normal maps, where there are some.
-    void relight(const LightVector& light);
+    void relight(const PartLights& lights, std::span<const formats::PrimitiveRecord> primitives);
     /// Of a primitive, but for struct_size; zeros where it has none.
     opaline_gl_normal_map normal_map_of(std::uint32_t primitive) const;
+
+    GLuint srgb_table() const { return srgb_table_; }
+    /// Of receivers, as in opaline_gl_images and opaline_gl_normal_map; 0: there are none.
+    GLuint vertex_alpha() const { return vertex_alpha_; }
+    GLuint tangent() const { return tangent_; }
 
   private:
     void make_normal_maps(const formats::AssetView& asset, GlNames& names);
@@ -36,9 +42,9 @@ class ImageTextures {
     std::vector<opaline_gl_images> primitive_;
     std::vector<GLuint> texture_;
     std::map<std::uint32_t, opaline_gl_normal_map> normal_map_;  // of primitives; without light
-    TurnedLight turned_;
-    std::map<std::uint32_t, formats::SheetShares> sheet_;  // thin-walled primitives with maps
-    std::map<std::uint32_t, TurnedLight> turned_sheet_;    // of the light that relit last
+    std::vector<formats::NormalMapRecord> record_;
+    TurnedLights turned_;  // of the light that relit last
+    GLuint vertex_alpha_ = 0, tangent_ = 0, srgb_table_ = 0;
 };
 
 }  // namespace opaline::runtime

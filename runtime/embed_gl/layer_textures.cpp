@@ -47,7 +47,6 @@ void LayerTextures::fill_picture(GLuint texture, std::size_t level,
 
 // What no light changes.
 void LayerTextures::make(const LayerLight& light, GlNames& names) {
-    kind_ = layer_kind(light);
     for (TexelLines* lines : {&table_values_, &sun_values_, &thickness_values_}) {
         lines->make(names);
     }
@@ -58,14 +57,23 @@ void LayerTextures::make(const LayerLight& light, GlNames& names) {
     value_first_[1] = static_cast<std::int32_t>(tables.size());
     tables.insert(tables.end(), glow.begin(), glow.end());
     table_values_.fill_of(std::span<const float>(tables));
-    albedo_map_ = names.make_table_texture();
+    const GLuint albedo_map = names.make_table_texture();
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
     for (std::size_t i = 0; i < light.albedo.level.size(); ++i) {
-        fill_picture(albedo_map_, i, light.albedo.level[i]);
+        fill_picture(albedo_map, i, light.albedo.level[i]);
     }
-    ground_light_ = names.make_table_texture();
-    base_light_ = names.make_table_texture();
-    block_ = names.make_buffer(sizeof(ShaderLayer) + sizeof(EyeInLayer), GL_DYNAMIC_DRAW);
+    const LayerKind kind = layer_kind(light);
+    objects_ = {sizeof objects_,
+                kind.repeats ? 1u : 0u,
+                kind.modes,
+                kind.glows ? 1u : 0u,
+                names.make_buffer(sizeof(ShaderLayer) + sizeof(EyeInLayer), GL_DYNAMIC_DRAW),
+                table_values_.name(),
+                sun_values_.name(),
+                thickness_values_.name(),
+                albedo_map,
+                names.make_table_texture(),
+                names.make_table_texture()};
 }
 
 opaline_status LayerTextures::show(const LayerLight& light, formats::Vec3 eye, GlNames& names) {
@@ -83,11 +91,11 @@ opaline_status LayerTextures::show(const LayerLight& light, formats::Vec3 eye, G
     value_first_[2] = static_cast<std::int32_t>(suns.size());
     suns.insert(suns.end(), flux.begin(), flux.end());
     sun_values_.fill_of(std::span<const float>(suns));
-    fill_picture(ground_light_, 0, light.ground_light.cell);
-    fill_picture(base_light_, 0, light.base_light.cell);
+    fill_picture(objects_.ground_light, 0, light.ground_light.cell);
+    fill_picture(objects_.base_light, 0, light.base_light.cell);
     const ShaderLayer record = make_shader_layer(light);
     places_ = layer_places(light);
-    fill_buffer(gl_, block_, 0, std::as_bytes(std::span(&record, 1)));
+    fill_buffer(gl_, objects_.block, 0, std::as_bytes(std::span(&record, 1)));
     look_from(eye);
     return OPALINE_OK;
 }
@@ -101,7 +109,7 @@ void LayerTextures::look_from(formats::Vec3 eye) {
                           places_.light.place_of(eye),
                           static_cast<float>(height - places_.base),
                           static_cast<float>(height - places_.ground_height)};
-    fill_buffer(gl_, block_, sizeof(ShaderLayer), std::as_bytes(std::span(&seen, 1)));
+    fill_buffer(gl_, objects_.block, sizeof(ShaderLayer), std::as_bytes(std::span(&seen, 1)));
 }
 
 }  // namespace opaline::runtime

@@ -24,16 +24,10 @@ class LayerTextures {
     /// [m, world]. Nothing before the first show.
     void look_from(formats::Vec3 eye);
 
-    bool is_shown() const { return block_ != 0; }
-    const LayerKind& kind() const { return kind_; }
-
-    GLuint block() const { return block_; }
-    GLuint table_values() const { return table_values_.name(); }
-    GLuint sun_values() const { return sun_values_.name(); }
-    GLuint thickness_values() const { return thickness_values_.name(); }
-    GLuint albedo_map() const { return albedo_map_; }
-    GLuint ground_light() const { return ground_light_; }
-    GLuint base_light() const { return base_light_; }
+    bool is_shown() const { return objects_.block != 0; }
+    const LayerPlaces& places() const { return places_; }  ///< in the light shown
+    /// Names, and what shaders are compiled for; all 0 before the first show.
+    const opaline_gl_layer& objects() const { return objects_; }
 
   private:
     opaline_status check_sizes(const LayerLight& light) const;
@@ -41,13 +35,12 @@ class LayerTextures {
     void fill_picture(GLuint texture, std::size_t level, const MipLevel<formats::Rgb>& picture);
 
     const GlFunctions& gl_;
-    LayerKind kind_;
     LayerPlaces places_;
     FrameBlend frames_;                          // that the thickness is of
     std::array<std::int32_t, 4> value_first_{};  // as in layer_tables.glsl
     TexelLines table_values_{gl_, kFloatTexel}, sun_values_{gl_, kFloatTexel};
     TexelLines thickness_values_{gl_, kFloatTexel};
-    GLuint block_ = 0, albedo_map_ = 0, ground_light_ = 0, base_light_ = 0;
+    opaline_gl_layer objects_{};
 };
 
 }  // namespace opaline::runtime

@@ -31,8 +31,6 @@ class MirroredLight {
     const Rotation& rotation() const { return rotation_; }
 
   private:
-    void upload_map(GLuint texture, std::uint32_t size, const float* rgba) const;
-
     const GlFunctions& gl_;
     std::vector<float> roughness_;       // of each primitive, below 0 where it is not glossy
     std::vector<std::uint32_t> levels_;  // ascending

@@ -17,10 +17,6 @@ using formats::TermSet;
 
 constexpr std::uint32_t kGroupSize = 64;  // invocations: two warps, one wave
 
-std::string define(const char* name, std::uint32_t value) {
-    return std::string("#define ") + name + " " + std::to_string(value) + "\n";
-}
-
 bool is_software(const GlFunctions& gl) {
     const auto* const renderer = reinterpret_cast<const char*>(gl.GetString(GL_RENDERER));
     if (renderer == nullptr) return false;
@@ -80,7 +76,6 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
     }
     batches_ = std::move(batches).value();
     alignment_ = limits.alignment;
-    max_block_bytes_ = limits.max_block_bytes;
     cubemap_size_ = asset.cubemap_size;
     vertices_ = asset.receivers();
     code_bits_ = asset.transport.code_bits;
@@ -115,8 +110,8 @@ opaline_status Relight::make_dot_program(std::uint32_t bands, bool keeps_sign, G
                                  define("LANES", lanes_) + define("ROWS", kGroupSize / lanes_) +
                                      define("BANDS", bands) + define("CODE_BITS", code_bits_) +
                                      define("INDEX_BYTES", index_bytes_) +
-                                     (keeps_sign ? "#define KEEPS_SIGN\n" : ""),
-                                 dot_comp_text);
+                                     (keeps_sign ? define("KEEPS_SIGN") : ""),
+                                 {{GL_COMPUTE_SHADER, dot_comp_text}});
     return program != 0 ? OPALINE_OK : OPALINE_GL_REFUSED;
 }
 
@@ -136,14 +131,15 @@ opaline_status Relight::make_programs(GlNames& names) {
         const std::uint32_t harmonics = sum.is_sheet ? 0 : sum.terms - (sum.is_separate ? 1 : 0);
         sum.program = names.make_program("view terms",
                                          define("HARMONICS", harmonics) +
-                                             (sum.is_separate ? "#define SEPARATE\n" : "") +
-                                             (sum.is_sheet ? "#define SHEET\n" : ""),
-                                         view_text.c_str());
+                                             (sum.is_separate ? define("SEPARATE") : "") +
+                                             (sum.is_sheet ? define("SHEET") : ""),
+                                         {{GL_COMPUTE_SHADER, view_text.c_str()}});
         if (sum.program == 0) return OPALINE_GL_REFUSED;
         sums_.push_back(sum);
     }
     if (values_ != 0) {
-        emitter_program_ = names.make_program("emitters", "", emitters_comp_text);
+        emitter_program_ =
+            names.make_program("emitters", "", {{GL_COMPUTE_SHADER, emitters_comp_text}});
         if (emitter_program_ == 0) return OPALINE_GL_REFUSED;
     }
     return OPALINE_OK;

@@ -56,10 +56,8 @@ class Relight {
     GLuint radiance() const { return radiance_; }
     bool needs_eye() const { return product_ != 0; }
     std::uint32_t cubemap_size() const { return cubemap_size_; }
-    std::size_t primitives() const { return primitives_.size(); }
     std::size_t dispatches() const { return batches_.size(); }  ///< of dot products
     std::uint32_t lanes_per_row() const { return lanes_; }
-    std::size_t max_block_bytes() const { return max_block_bytes_; }  ///< of one buffer, as used
     /// Of dot products: of one band and three, then those that keep signs; 0 where none is needed.
     const std::array<GLuint, 4>& dot_programs() const { return dot_program_; }
     std::span<const Sum> sums() const { return sums_; }
@@ -78,7 +76,7 @@ class Relight {
 
     const GlFunctions& gl_;
     std::uint32_t cubemap_size_ = 0, vertices_ = 0, code_bits_ = 8, index_bytes_ = 2, lanes_ = 1;
-    std::size_t alignment_ = 4, max_block_bytes_ = 0;
+    std::size_t alignment_ = 4;
     float farthest_ = 0;  // largest coordinate of the mesh [m]
     std::vector<formats::PrimitiveRecord> primitives_;
     std::vector<DotBatch> batches_;

@@ -13,7 +13,7 @@
 
 namespace opaline::runtime {
 
-// Volumes as volume_march.glsl reads them; for the renderer too.
+// Volumes as volume_march.glsl reads them.
 
 /// Every pixel keeps the registers of all of them, and the first picture waits for the driver to
 /// compile: on llvmpipe some seconds for one, 5 to 12 s for four, 50 s for sixteen.
@@ -38,7 +38,7 @@ std::uint32_t most_node_terms(const formats::VolumesView& volumes);
 /// Coefficients of VolumeLight under a light with one sun.
 std::size_t count_coefficients(const formats::VolumesView& volumes);
 
-/// Volume of volume_march.glsl, in std140 as in std430.
+/// Volume of volume_march.glsl, in std140.
 struct ShaderVolume {
     std::array<std::array<float, 4>, 3> to_bricks{};
     std::array<std::uint32_t, 4> extent_first{}, numbers{};

@@ -38,7 +38,6 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
     }
     records_.assign(volumes.records.begin(), volumes.records.end());
     glow_.assign(volumes.glow.record.begin(), volumes.glow.record.end());
-    terms_ = most_node_terms(volumes);
     for (std::size_t v = 0; v < records_.size(); ++v) {
         const auto lattice = make_lattice(volumes, records_[v]);
         if (lattice) entry_.push_back({{&records_[v], lattice->to_index, {}, {}, {}, {}}, v});
@@ -55,9 +54,15 @@ opaline_status VolumeTextures::make(const formats::VolumesView& volumes, GlNames
         glow_words_.make(names);
         glow_words_.fill_of(std::span(glow_words));
     }
-    block_ = names.make_buffer(
+    const GLuint block = names.make_buffer(
         records_.size() * (sizeof(ShaderVolume) + sizeof(std::array<float, 4>)) + kMaxSuns * 16,
         GL_DYNAMIC_DRAW);
+    objects_ = {sizeof objects_,          static_cast<std::uint32_t>(records_.size()),
+                most_node_terms(volumes), block,
+                brick_numbers_.name(),    density_codes_.name(),
+                corner_numbers_.name(),   node_light_.name(),
+                phase_entries_.name(),    glow_words.empty() ? 0u : 1u,
+                glow_words_.name()};
     return upload(relight_volumes(
         volumes, {}, {.terms = formats::TermSet::none, .emitters = dark_emitters(), .threads = 1}));
 }
@@ -69,37 +74,40 @@ opaline_status VolumeTextures::upload(const VolumeLight& light) {
         status != OPALINE_OK) {
         return status;
     }
-    part_ = light.part;
+    light_.part = light.part;
+    light_.glow = light.glow;
     node_light_.fill_of(std::span(light.coefficient));
     std::array<std::array<float, 4>, kMaxSuns> suns{};
     for (std::size_t i = 0; i < light.sun.size(); ++i) {
         suns[i] = {light.sun[i].x, light.sun[i].y, light.sun[i].z, 0};
     }
-    const std::size_t behind_records = records_.size() * sizeof(ShaderVolume);
-    fill_buffer(gl_, block_, behind_records, std::as_bytes(std::span(suns)));
-    std::vector<std::array<float, 4>> glow_colors;
-    glow_colors.reserve(records_.size());
-    for (std::size_t v = 0; v < records_.size(); ++v) {
-        glow_colors.push_back(shader_glow({glow_, {}, {}, {}}, light, v, 1));
-    }
-    fill_buffer(gl_, block_, behind_records + sizeof suns, std::as_bytes(std::span(glow_colors)));
+    fill_buffer(gl_, objects_.block, records_.size() * sizeof(ShaderVolume),
+                std::as_bytes(std::span(suns)));
     fill_records();
     return OPALINE_OK;
 }
 
-void VolumeTextures::look_from(formats::Vec3 eye) {
+void VolumeTextures::look_from(formats::Vec3 eye, double units_per_metre) {
     if (records_.empty()) return;
     eye_ = eye;
+    units_per_metre_ = units_per_metre;
     fill_records();
 }
 
 void VolumeTextures::fill_records() {
     std::vector<ShaderVolume> records(records_.size());  // those without an entry have no cells
     for (const Entry& entry : entry_) {
-        records[entry.volume] =
-            make_shader_volume(entry.lattice, entry.volume, part_[entry.volume], eye_, 1);
+        records[entry.volume] = make_shader_volume(
+            entry.lattice, entry.volume, light_.part[entry.volume], eye_, units_per_metre_);
     }
-    fill_buffer(gl_, block_, 0, std::as_bytes(std::span(records)));
+    fill_buffer(gl_, objects_.block, 0, std::as_bytes(std::span(records)));
+    std::vector<std::array<float, 4>> glow_colors;
+    glow_colors.reserve(records_.size());
+    for (std::size_t v = 0; v < records_.size(); ++v) {
+        glow_colors.push_back(shader_glow({glow_, {}, {}, {}}, light_, v, units_per_metre_));
+    }
+    fill_buffer(gl_, objects_.block, records_.size() * sizeof(ShaderVolume) + kMaxSuns * 16,
+                std::as_bytes(std::span(glow_colors)));
 }
 
 }  // namespace opaline::runtime

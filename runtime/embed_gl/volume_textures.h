@@ -25,20 +25,12 @@ class VolumeTextures {
 
     /// Precondition: `light` is of these volumes.
     opaline_status upload(const VolumeLight& light);
-    /// [m, world]
-    void look_from(formats::Vec3 eye);
+    /// [m, world]; distances of the shader are in units of which a metre has so many.
+    void look_from(formats::Vec3 eye, double units_per_metre = 1);
 
     std::size_t size() const { return records_.size(); }
-    std::uint32_t terms() const { return terms_; }
-
-    GLuint block() const { return block_; }
-    GLuint brick_numbers() const { return brick_numbers_.name(); }
-    GLuint density_codes() const { return density_codes_.name(); }
-    GLuint corner_numbers() const { return corner_numbers_.name(); }
-    GLuint node_light() const { return node_light_.name(); }
-    GLuint phase_entries() const { return phase_entries_.name(); }
-    /// pack_glow; 0 where no volume has light of its own.
-    GLuint glow_words() const { return glow_words_.name(); }
+    /// Names, and what shaders are compiled for; all names are 0 where there are no volumes.
+    const opaline_gl_volumes& objects() const { return objects_; }
 
   private:
     struct Entry {
@@ -51,11 +43,11 @@ class VolumeTextures {
     const GlFunctions& gl_;
     std::vector<formats::VolumeRecord> records_;
     std::vector<Entry> entry_;
-    std::vector<VolumeLight::Part> part_;
+    VolumeLight light_;  // its coefficients are on the GPU
     std::vector<formats::GlowRecord> glow_;
     formats::Vec3 eye_;
-    std::uint32_t terms_ = 1;
-    GLuint block_ = 0;
+    double units_per_metre_ = 1;
+    opaline_gl_volumes objects_{};
     TexelLines brick_numbers_{gl_, kWordTexel}, density_codes_{gl_, kWordTexel};
     TexelLines corner_numbers_{gl_, kWordTexel}, phase_entries_{gl_, kFloatTexel};
     TexelLines node_light_{gl_, kColorTexel}, glow_words_{gl_, kWordTexel};

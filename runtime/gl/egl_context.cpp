@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/gl/gl_handle.h"
-#include "runtime/gl/render_on_cpu.h"
+#include "runtime/gl/gl_objects.h"
 
 namespace opaline::runtime {
 namespace {

@@ -52,7 +52,7 @@ TileGrid tile_grid(const DrawScene& scene, const Tile& tile) {
 // The background is drawn at the depth that the target was cleared to.
 void draw_background(const DrawScene& scene, const DrawPrograms& programs, const TileView& view) {
     glDepthFunc(GL_EQUAL);
-    const GLuint program = programs.background.name();
+    const GLuint program = programs.background;
     glUseProgram(program);
     set_rays(view, program, 0);
     bind_environment(scene.environment, scene.rotation, program, 5);
@@ -75,41 +75,34 @@ void draw_pass(PicturePass pass, const DrawScene& scene, const DrawPrograms& pro
 
 }  // namespace
 
-formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlVolumes& volumes) {
+formats::Result<DrawPrograms> make_draw_programs(const formats::AssetView& asset, GlAsset& gl) {
     DrawPrograms programs;
-    auto surfaces = make_surface_programs(asset);
+    auto surfaces = make_surface_programs(asset, gl);
     if (!surfaces) return surfaces.error();
     programs.surfaces = std::move(surfaces).value();
-    if (!volumes.empty()) {
-        auto made = make_volume_program(volumes, false);
+    if (gl.volumes.size() > 0) {
+        const auto made = make_volume_program(gl.names, gl.volumes.objects(), false);
         if (!made) return made.error();
-        programs.volumes = std::move(made).value();
+        programs.volumes = *made;
     }
-    struct Job {
-        GlProgram& program;
-        const char* name;
-        std::string include;
-        const char* fragment;
-    };
-    const std::array<Job, 2> jobs{
-        {{programs.background, "background",
-          std::string(cube_map_text) + arc_tangent_text + environment_text, background_frag_text},
-         {programs.resolve, "box filter", "", resolve_frag_text}}};
-    for (const Job& job : jobs) {
-        const std::array<StageSource, 2> stages{
-            {{GL_VERTEX_SHADER, screen_vert_text}, {GL_FRAGMENT_SHADER, job.fragment}}};
-        auto program = make_program(job.name, job.include, stages);
-        if (!program) return program.error();
-        job.program = std::move(program).value();
-    }
+    const auto background = make_program(
+        gl.names, "background", std::string(cube_map_text) + arc_tangent_text + environment_text,
+        screen_vert_text, background_frag_text);
+    if (!background) return background.error();
+    programs.background = *background;
+    const auto resolve =
+        make_program(gl.names, "box filter", "", screen_vert_text, resolve_frag_text);
+    if (!resolve) return resolve.error();
+    programs.resolve = *resolve;
     GLuint name = 0;
     glCreateVertexArrays(1, &name);
     programs.nothing = GlVertexArray(name);
     return programs;
 }
 
-formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t height,
-                                             std::uint32_t supersampling, const DrawParts& parts) {
+formats::Result<DrawTarget> make_draw_target(const GlFunctions& gl, std::uint32_t width,
+                                             std::uint32_t height, std::uint32_t supersampling,
+                                             const DrawParts& parts) {
     const std::uint32_t columns = width * supersampling, rows = height * supersampling;
     DrawTarget target;
     target.samples = make_target_texture(GL_RGBA32F, columns, rows);
@@ -135,9 +128,9 @@ formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t 
         target.layer.mean_sheet = attach_sheet(target.layer.mean_frame, width, height);
         target.layer.sample_sheet = attach_sheet(target.layer.sample_frame, columns, rows);
     }
-    if (const auto status = check_gl("allocating a " + std::to_string(columns) + "x" +
-                                     std::to_string(rows) + " render target");
-        !status) {
+    const std::string doing =
+        "allocating a " + std::to_string(columns) + "x" + std::to_string(rows) + " render target";
+    if (const auto status = check_gl(gl, doing.c_str()); !status) {
         return status.error();
     }
     for (const GlFramebuffer* frame : {&target.sample_frame, &target.pixel_frame}) {
@@ -164,9 +157,8 @@ void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawT
     glClearNamedFramebufferfv(target.sample_frame.name(), GL_DEPTH, 0, &infinitely_far);
     const std::array<float, 4> black{0, 0, 0, 1};
     glClearNamedFramebufferfv(target.sample_frame.name(), GL_COLOR, 0, black.data());
-    const bool layers = scene.layers.shown;
-    for (const PicturePass pass :
-         list_passes(scene.background && !layers, !scene.volumes.empty())) {
+    const bool layers = scene.gl.layer.is_shown(), volumes = scene.gl.volumes.size() > 0;
+    for (const PicturePass pass : list_passes(scene.background && !layers, volumes)) {
         draw_pass(pass, scene, programs, view);
     }
 
@@ -180,7 +172,7 @@ void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawT
     glBindFramebuffer(GL_FRAMEBUFFER, target.pixel_frame.name());
     glViewport(0, 0, static_cast<GLsizei>(tile.width), static_cast<GLsizei>(tile.height));
     glBindTextureUnit(0, layers ? target.layer.samples.name() : target.samples.name());
-    if (!scene.volumes.empty()) {
+    if (volumes) {
         glBindTextureUnit(1, target.depth.name());
         if (layers) {
             glBindTextureUnit(2, target.layer.sample_sheet.light.name());
@@ -189,7 +181,7 @@ void draw_tile(const DrawScene& scene, const DrawPrograms& programs, const DrawT
         return draw_volumes_filtered(
             scene, layers ? programs.volumes_around_layer : programs.volumes, view);
     }
-    glUseProgram(programs.resolve.name());
+    glUseProgram(programs.resolve);
     glUniform1i(0, static_cast<GLint>(scene.supersampling));
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }

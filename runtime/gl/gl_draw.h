@@ -14,14 +14,14 @@ namespace opaline::runtime {
 
 struct DrawPrograms {
     SurfacePrograms surfaces;
-    GlProgram background, resolve;
-    GlProgram volumes;               ///< in place of `resolve`, where there are volumes
-    GlProgram volumes_around_layer;  ///< in place of `volumes`, where there is a layer too
-    LayerPrograms layers;            ///< where there are any (gl_layer_pass.h)
-    GlVertexArray nothing;           ///< for passes without vertex data
+    GLuint background = 0, resolve = 0;
+    GLuint volumes = 0;               ///< in place of `resolve`, where there are volumes
+    GLuint volumes_around_layer = 0;  ///< in place of `volumes`, where there is a layer too
+    LayerPrograms layers;             ///< where there are any (gl_layer_pass.h)
+    GlVertexArray nothing;            ///< for passes without vertex data
 };
-/// Only those that the asset has surfaces and volumes for. Errors: resource.
-formats::Result<DrawPrograms> make_draw_programs(const GlAsset& asset, const GlVolumes& volumes);
+/// Only those that the asset has surfaces and volumes for. `gl`: of that asset. Errors: resource.
+formats::Result<DrawPrograms> make_draw_programs(const formats::AssetView& asset, GlAsset& gl);
 
 /// Where a tile is drawn: samples with depth, and the box-filtered pixels.
 struct DrawTarget {
@@ -34,8 +34,9 @@ struct DrawParts {
     bool layers = false, volumes = false;
 };
 /// For tiles of up to width x height pixels of S x S samples.
-formats::Result<DrawTarget> make_draw_target(std::uint32_t width, std::uint32_t height,
-                                             std::uint32_t supersampling, const DrawParts& parts);
+formats::Result<DrawTarget> make_draw_target(const GlFunctions& gl, std::uint32_t width,
+                                             std::uint32_t height, std::uint32_t supersampling,
+                                             const DrawParts& parts);
 
 /// Part of a picture, in pixels from its top left corner.
 struct Tile {

@@ -1,6 +1,5 @@
 #pragma once
 
-#define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
 #include <utility>
@@ -30,9 +29,6 @@ class GlHandle {
     GLuint name_ = 0;
 };
 
-inline void delete_buffer(GLuint name) {
-    glDeleteBuffers(1, &name);
-}
 inline void delete_texture(GLuint name) {
     glDeleteTextures(1, &name);
 }
@@ -42,18 +38,8 @@ inline void delete_framebuffer(GLuint name) {
 inline void delete_vertex_array(GLuint name) {
     glDeleteVertexArrays(1, &name);
 }
-inline void delete_program(GLuint name) {
-    glDeleteProgram(name);
-}
-inline void delete_shader(GLuint name) {
-    glDeleteShader(name);
-}
-
-using GlBuffer = GlHandle<delete_buffer>;
 using GlTexture = GlHandle<delete_texture>;
 using GlFramebuffer = GlHandle<delete_framebuffer>;
 using GlVertexArray = GlHandle<delete_vertex_array>;
-using GlProgram = GlHandle<delete_program>;
-using GlShader = GlHandle<delete_shader>;
 
 }  // namespace opaline::runtime

@@ -1,8 +1,8 @@
 #include "runtime/gl/gl_layer_pass.h"
 
 #include <array>
+#include <cstdint>
 #include <string>
-#include <utility>
 
 #include "runtime/picture/layer_pass.h"
 #include "shader_text.h"
@@ -14,37 +14,19 @@ namespace {
 enum Uniform : GLint {
     kTileOrigin = 0,  // set_rays
     kEnvironment = 5,
-    kFieldOrigin = 10,
-    kEyeAboveBase,
-    kSpread,
-    kAlbedoOrigin,
-    kLightOrigin,
-    kEyeAboveGround,
-    kNearPlane,
+    kSpread = 12,
+    kNearPlane = 16,
     kSupersampling,
     kSeesCorners,
     kShowsSky
 };
 
-// Where the eye is.
-void set_origin(GLint location, const LayerGrid& grid, formats::Vec3 eye) {
-    const std::array<float, 2> place = grid.place_of(eye);
-    glUniform2f(location, place[0], place[1]);
-}
-
-void bind_layer(const DrawScene& scene) {
-    const GlLayers& layers = scene.layers;
-    const std::array<const GlTexture*, 3> textures{&layers.albedo, &layers.ground_light,
-                                                   &layers.base_light};
-    for (GLuint i = 0; i < textures.size(); ++i) {
-        glBindTextureUnit(5 + i, textures[i]->name());
-    }
-    const std::array<const GlBuffer*, 7> buffers{
-        &layers.block,      &layers.phase,    &layers.flux,     &layers.glow,
-        &layers.sun_tables, &layers.sun_flux, &layers.thickness};
-    for (GLuint i = 0; i < buffers.size(); ++i) {
-        glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1 + i, buffers[i]->name());
-    }
+void bind_layer(const opaline_gl_layer& layer) {
+    const std::array<GLuint, 3> pictures{layer.albedo_map, layer.ground_light, layer.base_light};
+    glBindTextures(5, static_cast<GLsizei>(pictures.size()), pictures.data());
+    const std::array<GLuint, 3> lines{layer.table_values, layer.sun_values, layer.thickness_values};
+    glBindTextures(10, static_cast<GLsizei>(lines.size()), lines.data());
+    glBindBufferBase(GL_UNIFORM_BUFFER, 0, layer.block);
 }
 
 // Of a pixel [rad].
@@ -52,21 +34,13 @@ float pixel_spread(const DrawScene& scene, const TileView& view) {
     return static_cast<float>(2 * view.frame.tan_half_y / scene.camera.height);
 }
 
-void use_see(const DrawScene& scene, const GlProgram& program, const TileView& view) {
-    const GlLayers& layers = scene.layers;
-    const Camera& camera = scene.camera;
-    glUseProgram(program.name());
-    set_rays(view, program.name(), kTileOrigin);
-    bind_environment(scene.environment, scene.rotation, program.name(), kEnvironment);
-    bind_layer(scene);
-    set_origin(kFieldOrigin, layers.places.field, camera.eye);
-    set_origin(kAlbedoOrigin, layers.places.ground, camera.eye);
-    set_origin(kLightOrigin, layers.places.light, camera.eye);
-    const double height = static_cast<double>(camera.eye.y);
-    glUniform1f(kEyeAboveBase, static_cast<float>(height - layers.places.base));
-    glUniform1f(kEyeAboveGround, static_cast<float>(height - layers.places.ground_height));
+void use_see(const DrawScene& scene, GLuint program, const TileView& view) {
+    glUseProgram(program);
+    set_rays(view, program, kTileOrigin);
+    bind_environment(scene.environment, scene.rotation, program, kEnvironment);
+    bind_layer(scene.gl.layer.objects());
     glUniform1f(kSpread, pixel_spread(scene, view));
-    glUniform1f(kNearPlane, camera.near_plane);
+    glUniform1f(kNearPlane, scene.camera.near_plane);
     glUniform1i(kSupersampling, static_cast<GLint>(scene.supersampling));
     glUniform1i(kShowsSky, scene.background ? 1 : 0);
 }
@@ -74,14 +48,14 @@ void use_see(const DrawScene& scene, const GlProgram& program, const TileView& v
 // Locations of layer_smooth.frag.glsl after the first five.
 enum SmoothUniform : GLint { kSmoothSamples = 5, kTolerance, kNearSuns };
 
-void use_smooth(const DrawScene& scene, const GlProgram& program, const TileView& view) {
-    glUseProgram(program.name());
-    set_rays(view, program.name(), kTileOrigin);
+void use_smooth(const DrawScene& scene, GLuint program, const TileView& view) {
+    glUseProgram(program);
+    set_rays(view, program, kTileOrigin);
     glUniform1i(kSmoothSamples, static_cast<GLint>(scene.supersampling));
     glUniform1f(kTolerance, kCornerTolerance);
     std::array<std::array<float, 4>, kMaxLayerSuns> suns{};  // a chord of 0 is never reached
-    for (std::size_t i = 0; i < scene.layers.suns.size(); ++i) {
-        const LayerSun& sun = scene.layers.suns[i];
+    for (std::size_t i = 0; i < scene.layer_suns.size(); ++i) {
+        const LayerSun& sun = scene.layer_suns[i];
         suns[i] = {sun.direction.x, sun.direction.y, sun.direction.z,
                    1.1f * sun.angular_radius + 2 * pixel_spread(scene, view)};
     }
@@ -96,25 +70,26 @@ void bind_sheet(const SheetTextures& sheet) {
 
 }  // namespace
 
-formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers, bool sheet) {
+formats::Result<LayerPrograms> make_layer_programs(GlNames& names, const LayerKind& kind,
+                                                   bool sheet) {
     const std::string see = std::string(cube_map_text) + arc_tangent_text + environment_text +
                             layer_tables_text + layer_march_text + layer_see_text +
                             layers_frag_text;
-    const std::string defines = layers.defines + "#define SHEET " + (sheet ? "1\n" : "0\n");
+    const std::string defines = define("REPEAT", kind.repeats ? 1 : 0) +
+                                define("MODES", kind.modes) + define("GLOW", kind.glows ? 1 : 0) +
+                                define("SHEET", sheet ? 1 : 0);
     LayerPrograms programs;
     struct Job {
-        GlProgram& program;
+        GLuint& program;
         const char *name, *fragment;
     };
     const std::array<Job, 3> jobs{{{programs.see, "cloud layer", see.c_str()},
                                    {programs.smooth, "smooth pixels", layer_smooth_frag_text},
                                    {programs.spread, "smooth samples", layer_spread_frag_text}}};
     for (const Job& job : jobs) {
-        const std::array<StageSource, 2> stages{
-            {{GL_VERTEX_SHADER, screen_vert_text}, {GL_FRAGMENT_SHADER, job.fragment}}};
-        auto program = make_program(job.name, defines, stages);
+        const auto program = make_program(names, job.name, defines, screen_vert_text, job.fragment);
         if (!program) return program.error();
-        job.program = std::move(program).value();
+        job.program = *program;
     }
     return programs;
 }
@@ -147,7 +122,7 @@ void draw_gl_layers(const DrawScene& scene, const LayerPrograms& programs, const
     glClearNamedFramebufferfv(target.sample_frame.name(), GL_DEPTH, 0, &left);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_ALWAYS);
-    glUseProgram(programs.spread.name());
+    glUseProgram(programs.spread);
     glUniform1i(0, samples);
     glBindTextureUnit(3, target.means.name());
     bind_sheet(target.mean_sheet);
@@ -155,7 +130,7 @@ void draw_gl_layers(const DrawScene& scene, const LayerPrograms& programs, const
 
     glDepthFunc(GL_EQUAL);
     glDepthMask(GL_FALSE);
-    glUseProgram(programs.see.name());
+    glUseProgram(programs.see);
     glUniform1i(kSeesCorners, 0);
     draw(target.sample_frame, columns, rows);
     glDepthMask(GL_TRUE);

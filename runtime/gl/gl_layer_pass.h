@@ -1,19 +1,18 @@
 #pragma once
 
 #include "formats/opal/result.h"
-#include "runtime/gl/gl_layers.h"
 #include "runtime/gl/gl_objects.h"
 #include "runtime/gl/gl_scene.h"
 
 namespace opaline::runtime {
 
 struct LayerPrograms {
-    GlProgram see;             ///< along the rays of corners and of samples
-    GlProgram smooth, spread;  ///< which pixels corners do for; to their samples
+    GLuint see = 0;                 ///< along the rays of corners and of samples
+    GLuint smooth = 0, spread = 0;  ///< which pixels corners do for; to their samples
 };
-/// For layers.defines; `sheet`: write what volumes need of the layer (clouds/see_layer.h), too.
-/// Errors: resource. Precondition: layers.shown.
-formats::Result<LayerPrograms> make_layer_programs(const GlLayers& layers, bool sheet);
+/// `sheet`: write what volumes need of the layer (clouds/see_layer.h), too. Errors: resource.
+formats::Result<LayerPrograms> make_layer_programs(GlNames& names, const LayerKind& kind,
+                                                   bool sheet);
 
 /// A LayerSheet a texel: its radiance with its distance [m], its transmittance; none: not written.
 struct SheetTextures {

@@ -1,38 +1,30 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <span>
 #include <string>
 
 #include "formats/opal/result.h"
+#include "runtime/embed_gl/gl_names.h"
 #include "runtime/gl/gl_handle.h"
-#include "runtime/gl/render_on_cpu.h"
 
 namespace opaline::runtime {
 
-/// Everything here needs a current OpenGL 4.5 context.
+/// What errors of OpenGL advise.
+inline constexpr const char* kRenderOnCpu = "render on the CPU: `opaline render --backend cpu`";
 
-/// ok, or resource naming the GL errors since the last check and what was being done.
-formats::Status check_gl(const std::string& doing);
+/// Everything below needs a current OpenGL 4.5 context.
 
-/// A buffer with these bytes, padded to a multiple of 16 and never empty, so that a shader may
-/// read whole words and bind it in any case. `resident` is increased by its size.
-GlBuffer make_buffer(std::span<const std::byte> bytes, std::size_t& resident);
+/// ok, or resource: the device, and what opaline_last_error says.
+formats::Status as_status(opaline_status status);
 
-template <class T>
-GlBuffer make_buffer_of(std::span<const T> values, std::size_t& resident) {
-    return make_buffer(std::as_bytes(values), resident);
-}
+/// check_errors: the GL errors since the last check.
+formats::Status check_gl(const GlFunctions& gl, const char* doing);
 
-/// One shader stage: "#version 450 core", `defines`, then the text.
-struct StageSource {
-    GLenum stage = 0;
-    const char* text = nullptr;
-};
+/// A vertex and a fragment shader, after `defines`. Errors: resource with the driver's log.
+formats::Result<GLuint> make_program(GlNames& names, const char* name, const std::string& defines,
+                                     const char* vertex, const char* fragment);
 
-/// Compiles and links. Errors: resource with the driver's log.
-formats::Result<GlProgram> make_program(const std::string& name, const std::string& defines,
-                                        std::span<const StageSource> stages);
+/// In buffers and textures [bytes].
+std::size_t resident_bytes(const GlNames& names);
 
 }  // namespace opaline::runtime

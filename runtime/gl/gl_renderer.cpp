@@ -10,12 +10,9 @@
 #include "formats/opal/rgb.h"
 #include "runtime/emitter_light.h"
 #include "runtime/gl/egl_context.h"
-#include "runtime/gl/gl_asset.h"
 #include "runtime/gl/gl_draw.h"
 #include "runtime/gl/gl_environment.h"
 #include "runtime/gl/gl_layer_pass.h"
-#include "runtime/gl/gl_layers.h"
-#include "runtime/gl/gl_relight.h"
 #include "runtime/gl/gl_volume_pass.h"
 #include "runtime/gl/gl_volumes.h"
 #include "runtime/picture/software_renderer.h"
@@ -30,14 +27,39 @@ using formats::Rgb;
 
 // What the surface of each primitive sends out by itself, without its image; empty where there are
 // no emitters.
-std::vector<Rgb> own_radiances(const GlAsset& asset, const EmitterLight& light) {
+std::vector<Rgb> own_radiances(const formats::AssetView& asset, const EmitterLight& light) {
     std::vector<Rgb> own;
     if (asset.emitters.own.empty()) return own;
     own.reserve(asset.primitives.size());
     for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
-        own.push_back(own_radiance(asset.emitters.view(), light, p));
+        own.push_back(own_radiance(asset.emitters, light, p));
     }
     return own;
+}
+
+formats::Status check_lights(const PartLights& lights, const formats::AssetView& asset) {
+    const std::size_t texels = std::size_t{6} * asset.cubemap_size * asset.cubemap_size;
+    for (const LightVector& light : lights.light) {
+        if (light.n == asset.cubemap_size && light.rgba.size() == 4 * texels) continue;
+        return make_error(ErrorKind::usage, {}, "light vector",
+                          "found a cube map of " + std::to_string(light.n) + " texels and " +
+                              std::to_string(light.rgba.size()) + " floats, expected " +
+                              std::to_string(asset.cubemap_size) + " texels as the asset",
+                          "project the environment at the asset's cube map size");
+    }
+    const std::size_t primitives = asset.primitives.size(), lit = lights.of_primitive.size();
+    if (lit != 0 && lit != primitives) {
+        return make_error(ErrorKind::usage, {}, "lights of primitives",
+                          "found " + std::to_string(lit) + ", expected one for each of " +
+                              std::to_string(primitives));
+    }
+    const auto is_one = [&](std::uint32_t number) { return number < lights.light.size(); };
+    if (!is_one(lights.of_volumes) || !std::ranges::all_of(lights.of_primitive, is_one)) {
+        return make_error(
+            ErrorKind::usage, {}, "lights of primitives",
+            "found one beyond the last of " + std::to_string(lights.light.size()) + " lights");
+    }
+    return formats::ok_status();
 }
 
 // Seconds since it was made or last asked, all GL commands so far included.
@@ -55,26 +77,23 @@ class GlClock {
 
 // What lives on the GPU, to be destroyed while the context is current.
 struct Resources {
-    GlRelight relight;
-    GlAsset asset;
+    GlAsset gl;
     GlEnvironment environment;
-    GlSpecular specular;
-    GlVolumes volumes;
-    GlLayers layers;
     DrawPrograms draw_programs;
+
+    ~Resources() { gl.names.release(); }
 };
 
-formats::Status compile_layers(Resources& resources) {
-    const bool has_volumes = !resources.volumes.empty();
-    auto layers = make_layer_programs(resources.layers, has_volumes);
+formats::Status compile_layers(GlAsset& gl, const LayerKind& kind, DrawPrograms& programs) {
+    const bool has_volumes = gl.volumes.size() > 0;
+    const auto layers = make_layer_programs(gl.names, kind, has_volumes);
     if (!layers) return layers.error();
-    resources.draw_programs.layers = std::move(layers).value();
-    if (!has_volumes || resources.draw_programs.volumes_around_layer.name() != 0) {
-        return formats::ok_status();
+    if (has_volumes) {
+        const auto volumes = make_volume_program(gl.names, gl.volumes.objects(), true);
+        if (!volumes) return volumes.error();
+        programs.volumes_around_layer = *volumes;
     }
-    auto volumes = make_volume_program(resources.volumes, true);
-    if (!volumes) return volumes.error();
-    resources.draw_programs.volumes_around_layer = std::move(volumes).value();
+    programs.layers = *layers;
     return formats::ok_status();
 }
 
@@ -88,7 +107,7 @@ std::uint32_t largest_target() {
 }  // namespace
 
 struct GlRenderer::State {
-    explicit State(EglContext made) : context(std::move(made)) {}
+    State(EglContext made, const formats::AssetView& of) : context(std::move(made)), asset(of) {}
     State(const State&) = delete;
     State& operator=(const State&) = delete;
     ~State() {
@@ -99,12 +118,14 @@ struct GlRenderer::State {
     }
 
     EglContext context;
+    formats::AssetView asset;
     std::optional<Resources> resources;
+    GlVolumeLight volumes{asset.volumes, {}, {}, true, formats::TermSet::none};
+    std::vector<LayerSun> layer_suns;
     Rotation rotation;
     bool mirrors_world = false;  // GlOptions::mirrored was given
     GlStats stats;
-    std::vector<formats::Rgb> own;  ///< own_radiances of the last set_light
-    TurnedLights turned;
+    std::vector<Rgb> own;  ///< own_radiances of the last set_light
 };
 
 GlRenderer::GlRenderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -123,85 +144,82 @@ formats::Result<GlRenderer> GlRenderer::create(const formats::AssetView& asset,
     }
     auto context = EglContext::create();
     if (!context) return context.error();
-    auto state = std::make_unique<State>(std::move(context).value());
+    auto state = std::make_unique<State>(std::move(context).value(), asset);
     const CurrentContext current(state->context);
     if (auto status = current.status(); !status) return status.error();
 
     GlClock clock;
-    auto relight = GlRelight::create(asset, {options.lanes_per_row, options.max_block_bytes});
-    if (!relight) return relight.error();
-    auto gl_asset = upload_asset(asset, relight->relight().radiance());
-    if (!gl_asset) return gl_asset.error();
-    auto gl_volumes = upload_volumes(asset.volumes, relight->relight().max_block_bytes());
-    if (!gl_volumes) return gl_volumes.error();
-    auto gl_environment = upload_environment(environment);
-    if (!gl_environment) return gl_environment.error();
+    GlFunctions functions;
+    if (auto status = as_status(load_gl_functions(EglContext::load_function, functions)); !status) {
+        return status.error();
+    }
+    Resources& resources = state->resources.emplace();
+    GlAsset& gl = resources.gl;
+    gl.gl = functions;
+    constexpr std::uint32_t kFlags =
+        OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_IMAGES | OPALINE_GL_WITH_VOLUMES;
+    if (auto status =
+            as_status(gl.upload(asset, kFlags, {options.lanes_per_row, options.max_block_bytes}));
+        !status) {
+        return status.error();
+    }
+    const auto uploaded = upload_environment(environment, gl.gl, gl.names);
+    if (!uploaded) return uploaded.error();
+    resources.environment = *uploaded;
     state->stats.upload_seconds = clock.lap();
-    auto gl_specular = upload_specular(
-        make_specular_light(options.mirrored != nullptr ? *options.mirrored : environment,
-                            specular_needs(asset), {}, 0));
-    if (!gl_specular) return gl_specular.error();
+    state->mirrors_world = options.mirrored != nullptr;
+    gl.mirror(make_specular_light(state->mirrors_world ? *options.mirrored : environment,
+                                  specular_needs(asset), {}, 0));
+    if (auto status = check_gl(gl.gl, "uploading specular light"); !status) return status.error();
     state->stats.specular_seconds = clock.lap();
 
-    auto draw_programs = make_draw_programs(*gl_asset, *gl_volumes);
+    auto draw_programs = make_draw_programs(asset, gl);
     if (!draw_programs) return draw_programs.error();
-    state->stats.gpu_bytes = relight->resident() + gl_asset->resident + gl_environment->resident +
-                             gl_specular->resident + gl_volumes->resident;
-    state->stats.dispatches = static_cast<std::uint32_t>(relight->relight().dispatches());
-    state->stats.lanes_per_row = relight->relight().lanes_per_row();
-    state->mirrors_world = options.mirrored != nullptr;
+    resources.draw_programs = std::move(draw_programs).value();
+    state->stats.gpu_bytes = resident_bytes(gl.names);
+    state->stats.dispatches = static_cast<std::uint32_t>(gl.relight.dispatches());
+    state->stats.lanes_per_row = gl.relight.lanes_per_row();
     state->stats.device = state->context.description();
-    state->resources.emplace(Resources{std::move(*relight),
-                                       std::move(*gl_asset),
-                                       std::move(*gl_environment),
-                                       std::move(*gl_specular),
-                                       std::move(*gl_volumes),
-                                       {},
-                                       std::move(*draw_programs)});
     return GlRenderer(std::move(state));
 }
 
 formats::Status GlRenderer::set_light(const PartLights& lights, const Rotation& rotation,
                                       const EmitterLight& emitters) {
-    Resources& resources = *state_->resources;
+    GlAsset& gl = state_->resources->gl;
     const CurrentContext current(state_->context);
     if (auto status = current.status(); !status) return status;
+    if (auto status = check_lights(lights, state_->asset); !status) return status;
 
     GlClock clock;
-    if (auto status = resources.relight.light(lights); !status) return status;
+    gl.relight.light(lights, gl.names);
     state_->stats.light_seconds = clock.lap();
-    if (auto status = resources.relight.dot(emitters); !status) return status;
-    state_->own = own_radiances(resources.asset, emitters);
-    state_->turned =
-        make_turned_lights(lights, resources.asset.primitives, resources.asset.normal_maps);
-    if (auto status = relight_gl_volumes(resources.volumes, lights.light[lights.of_volumes],
-                                         formats::TermSet::all, emitters);
+    gl.relight.dot(emitters);
+    gl.images.relight(lights, gl.primitives);
+    state_->own = own_radiances(state_->asset, emitters);
+    if (auto status = relight_gl_volumes(state_->volumes, gl.volumes,
+                                         lights.light[lights.of_volumes], emitters);
         !status) {
         return status;
     }
     state_->stats.dot_seconds = clock.lap();
     state_->rotation = rotation;
-    return check_gl("computing dot products");
+    gl.mirrored.turn(state_->mirrors_world ? Rotation{} : rotation);
+    state_->stats.gpu_bytes = resident_bytes(gl.names);
+    return check_gl(gl.gl, "computing dot products");
 }
 
 formats::Status GlRenderer::set_layers(const LayerLight& light) {
     const CurrentContext current(state_->context);
     if (auto status = current.status(); !status) return status;
-    Resources& resources = *state_->resources;
-    GlLayers& layers = resources.layers;
-    const std::string compiled_for = layers.defines;
-    state_->stats.gpu_bytes -= layers.layer_bytes + layers.light_bytes;
-    auto status = relight_gl_layers(layers, light);
-    state_->stats.gpu_bytes += layers.layer_bytes + layers.light_bytes;
-    if (!status) return status;
-    if (layers.defines != compiled_for) {
-        if (auto made = compile_layers(resources); !made) {
-            layers.shown = false;
-            layers.defines.clear();
-            return made;
-        }
+    GlAsset& gl = state_->resources->gl;
+    DrawPrograms& programs = state_->resources->draw_programs;
+    if (programs.layers.see == 0) {
+        if (auto status = compile_layers(gl, layer_kind(light), programs); !status) return status;
     }
-    return formats::ok_status();
+    if (auto status = as_status(gl.layer.show(light, {}, gl.names)); !status) return status;
+    state_->layer_suns = light.sky.suns;
+    state_->stats.gpu_bytes = resident_bytes(gl.names);
+    return check_gl(gl.gl, "uploading the light of a cloud layer");
 }
 
 formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRenderOptions& options) {
@@ -215,32 +233,30 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
     const std::uint32_t s = options.supersampling;
     const std::uint32_t side =
         std::max(1u, std::min(options.max_tile_samples, largest_target()) / s);
+    GlAsset& gl = resources.gl;
     const auto target =
-        make_draw_target(std::min(side, camera.width), std::min(side, camera.height), s,
-                         {resources.layers.shown, !resources.volumes.empty()});
+        make_draw_target(gl.gl, std::min(side, camera.width), std::min(side, camera.height), s,
+                         {gl.layer.is_shown(), gl.volumes.size() > 0});
     if (!target) return target.error();
 
     auto picture = make_picture(camera.width, camera.height);
     if (!picture) return picture;
-    if (auto status = resources.relight.view(camera.eye, options.terms); !status) {
+    gl.relight.view(camera.eye, options.terms);
+    if (auto status = show_volume_terms(state_->volumes, gl.volumes, options.terms); !status) {
         return status.error();
     }
-    if (auto status = show_volume_terms(resources.volumes, options.terms); !status) {
-        return status.error();
-    }
-    const DrawScene scene{resources.asset,
+    gl.volumes.look_from(camera.eye, view_unit(camera));
+    gl.layer.look_from(camera.eye);
+    const DrawScene scene{state_->asset,
+                          gl,
                           resources.environment,
-                          resources.specular,
-                          resources.volumes,
-                          resources.layers,
                           state_->rotation,
-                          state_->mirrors_world ? Rotation{} : state_->rotation,
                           camera,
                           s,
                           options.terms,
                           options.background,
                           state_->own,
-                          &state_->turned};
+                          state_->layer_suns};
     for (std::uint32_t y = 0; y < camera.height; y += side) {
         for (std::uint32_t x = 0; x < camera.width; x += side) {
             if (options.stop != nullptr && options.stop->load()) {
@@ -254,22 +270,22 @@ formats::Result<Picture> GlRenderer::render(const Camera& camera, const GlRender
             state_->stats.readback_seconds += clock.lap();
         }
     }
-    if (auto status = check_gl("drawing"); !status) return status.error();
+    if (auto status = check_gl(gl.gl, "drawing"); !status) return status.error();
     return picture;
 }
 
 formats::Result<std::vector<formats::Rgb>> GlRenderer::read_radiance() {
     const CurrentContext current(state_->context);
     if (auto status = current.status(); !status) return status.error();
-    const GlAsset& asset = state_->resources->asset;
-    std::vector<float> padded(std::size_t{asset.vertices} * 4);
+    const GlAsset& gl = state_->resources->gl;
+    std::vector<float> padded(std::size_t{gl.relight.vertices()} * 4);
     if (!padded.empty()) {
-        glGetNamedBufferSubData(state_->resources->relight.relight().radiance(), 0,
+        glGetNamedBufferSubData(gl.relight.radiance(), 0,
                                 static_cast<GLsizeiptr>(padded.size() * sizeof(float)),
                                 padded.data());
     }
-    if (auto status = check_gl("reading radiance"); !status) return status.error();
-    std::vector<formats::Rgb> radiance(asset.vertices);
+    if (auto status = check_gl(gl.gl, "reading radiance"); !status) return status.error();
+    std::vector<formats::Rgb> radiance(gl.relight.vertices());
     for (std::size_t v = 0; v < radiance.size(); ++v) {
         radiance[v] = {padded[4 * v], padded[4 * v + 1], padded[4 * v + 2]};
     }

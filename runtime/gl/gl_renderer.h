@@ -58,8 +58,8 @@ struct GlStats {
 ///
 /// Owns its GL context, which is current only inside calls; the caller's context is restored. One
 /// thread at a time. The same image as render_software with the same radiance and specular light,
-/// up to rounding and to which sample an edge falls on. Reads the asset and environment only in
-/// `create`.
+/// up to rounding and to which sample an edge falls on. Reads the environment only in `create`; the
+/// asset's bytes must outlive the renderer.
 class GlRenderer {
   public:
     /// Uploads. Errors: resource (no EGL or GL, memory, or size limits, with the driver's name;

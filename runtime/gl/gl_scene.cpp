@@ -41,8 +41,8 @@ void bind_environment(const GlEnvironment& environment, const Rotation& rotation
     glUniform2f(first + 2, environment.u_offset, environment.u_sign);
     glUniform1i(first + 3, environment.rows_include_poles ? 1 : 0);
     glUniform1i(first + 4, environment.disc_count);
-    glBindTextureUnit(0, environment.texture.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, environment.discs.name());
+    glBindTextureUnit(0, environment.texture);
+    glBindTextureUnit(4, environment.discs);
 }
 
 }  // namespace opaline::runtime

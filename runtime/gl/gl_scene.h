@@ -5,31 +5,25 @@
 
 #include "formats/opal/terms.h"
 #include "formats/opal/vec3.h"
-#include "runtime/gl/gl_asset.h"
+#include "runtime/embed_gl/gl_asset.h"
 #include "runtime/gl/gl_environment.h"
-#include "runtime/gl/gl_layers.h"
-#include "runtime/gl/gl_volumes.h"
 #include "runtime/light_vector.h"
-#include "runtime/normal_maps/turned_light.h"
 #include "runtime/picture/camera.h"
 
 namespace opaline::runtime {
 
 /// Everything a tile is drawn from.
 struct DrawScene {
-    const GlAsset& asset;
+    const formats::AssetView& asset;
+    const GlAsset& gl;
     const GlEnvironment& environment;
-    const GlSpecular& specular;
-    const GlVolumes& volumes;
-    const GlLayers& layers;
     const Rotation& rotation;
-    Rotation mirror_rotation;  ///< of `specular`
     const Camera& camera;
     std::uint32_t supersampling = 1;
     formats::TermSet terms = formats::TermSet::all;
     bool background = true;               ///< false: black
     std::span<const formats::Rgb> own{};  ///< own_radiances (gl_renderer.h)
-    const TurnedLights* turned = nullptr;
+    std::span<const LayerSun> layer_suns{};
 };
 
 /// Where a tile's samples lie in the picture.

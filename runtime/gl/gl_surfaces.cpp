@@ -1,7 +1,9 @@
 #include "runtime/gl/gl_surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
+#include <cstddef>
 #include <string>
 
 #include "formats/opal/ggx_albedo.h"
@@ -33,8 +35,7 @@ enum Uniform : GLint {
     kF0F90,
     kMetallicRoughness,
     kGlossWrap,
-    kSuns,
-    kOwnLight,
+    kOwnLight = 19,
     kOwnWrap,
     kHole,
     kFirstSample,
@@ -76,51 +77,32 @@ bool has_image(SurfaceKind kind) {
            kind[kNormalMapped];
 }
 
-const formats::OwnLight* own_light_of(const GlAsset& asset, std::size_t primitive) {
-    return asset.emitters.view().own_of(static_cast<std::uint32_t>(primitive));
-}
-
-const formats::HoleRecord* hole_of(const GlAsset& asset, std::size_t primitive) {
-    return formats::HolesView{asset.holes, {}}.of(static_cast<std::uint32_t>(primitive));
-}
-
-const formats::NormalMapRecord* normal_map_of(const GlAsset& asset, std::size_t primitive) {
-    return formats::NormalMapsView{asset.normal_maps, {}}.of(static_cast<std::uint32_t>(primitive));
-}
-
-SurfaceKind surface_kind(const GlAsset& asset, std::size_t primitive) {
-    const formats::PrimitiveRecord& record = asset.primitives[primitive];
-    const auto is_image = [&](std::uint32_t number) { return number < asset.images.size(); };
+SurfaceKind surface_kind(const formats::AssetView& asset, const GlAsset& gl, std::uint32_t p) {
+    const formats::PrimitiveRecord& record = asset.primitives[p];
+    const opaline_gl_images images = gl.images.of(p);
     SurfaceKind kind;
-    kind[kTextured] = is_image(record.base_color_image);
+    kind[kTextured] = images.base_color.texture != 0;
     kind[kTranslucent] = record.shading == formats::Shading::translucent;
-    kind[kMirroring] = !asset.roughness.empty() && asset.roughness[primitive] >= 0;
-    kind[kGlossy] = !asset.gloss.empty() && asset.gloss[primitive].is_glossy();
-    kind[kGlossImage] = kind[kGlossy] && is_image(asset.gloss[primitive].image);
-    if (const formats::OwnLight* const own = own_light_of(asset, primitive)) {
-        kind[kGlows] = true;
-        kind[kOwnImage] = is_image(own->image);
-    }
-    if (const formats::HoleRecord* const hole = hole_of(asset, primitive)) {
+    kind[kMirroring] = gl.mirrored.lobe_of(p).texture != 0;
+    kind[kGlossy] = !gl.gloss.empty() && gl.gloss[p].is_glossy();
+    kind[kGlossImage] = images.gloss.texture != 0;
+    kind[kGlows] = asset.emitters.own_of(p) != nullptr;
+    kind[kOwnImage] = images.emission.texture != 0;
+    if (const formats::HoleRecord* const hole = asset.holes.of(p)) {
         kind[kHasHoles] = true;
         kind[kClear] = hole->clear != 0;
-        kind[kHoleImage] = is_image(hole->image);
+        kind[kHoleImage] = images.alpha.texture != 0;
     }
-    if (const formats::NormalMapRecord* const map = normal_map_of(asset, primitive)) {
+    if (const opaline_gl_normal_map map = gl.images.normal_map_of(p); map.image.texture != 0) {
         kind[kNormalMapped] = true;
-        kind[kTwoSided] =
-            record.shading == formats::Shading::sheet && formats::sheet_shares_of(*map).any();
-        kind[kTurned] = kind[kTwoSided] || record.shading == formats::Shading::diffuse;
+        kind[kTwoSided] = map.is_turned == 2;
+        kind[kTurned] = map.is_turned != 0;
     }
     return kind;
 }
 
 bool has_view(SurfaceKind kind) {
     return kind[kTranslucent] || kind[kGlossy] || kind[kNormalMapped] || kind[kClear];
-}
-
-std::string define(const char* name, const std::string& value = {}) {
-    return std::string("#define ") + name + " " + value + "\n";
 }
 
 std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
@@ -139,16 +121,15 @@ std::string defines_of(SurfaceKind kind, bool has_vertex_alpha) {
 std::string fragment_text(SurfaceKind kind) {
     std::string text;
     if (has_image(kind)) {
-        text += define("WRAP_CLAMP", std::to_string(static_cast<int>(formats::Wrap::clamp))) +
-                define("WRAP_MIRROR", std::to_string(static_cast<int>(formats::Wrap::mirror))) +
-                define("WRAP_NEAREST", std::to_string(formats::kNearestBit)) + image_text;
+        text += define("WRAP_CLAMP", static_cast<std::size_t>(formats::Wrap::clamp)) +
+                define("WRAP_MIRROR", static_cast<std::size_t>(formats::Wrap::mirror)) +
+                define("WRAP_NEAREST", formats::kNearestBit) + image_text;
     }
     text += cube_map_text;
     text += surface_text;
     if (kind[kGlossy]) {
-        text += define("LOBE_TAPS", std::to_string(kLobeTaps)) +
-                define("ALBEDO_ROWS", std::to_string(formats::kAlbedoRows)) +
-                define("ALBEDO_COLUMNS", std::to_string(formats::kAlbedoColumns)) +
+        text += define("LOBE_TAPS", kLobeTaps) + define("ALBEDO_ROWS", formats::kAlbedoRows) +
+                define("ALBEDO_COLUMNS", formats::kAlbedoColumns) +
                 define("NARROW_ROUGHNESS", std::to_string(kNarrowRoughness)) +
                 define("WIDE_ROUGHNESS", std::to_string(kWideRoughness)) + gloss_text;
     }
@@ -185,56 +166,38 @@ void set_view(const DrawScene& scene, const TileView& view, GLuint program) {
                        scale_y - 2.0f * grid.first_row / grid.tile_rows - 1.0f);
 }
 
-void set_mirroring(const DrawScene& scene, GLuint program, std::size_t primitive) {
-    const SpecularLight& light = scene.specular.light;
-    formats::AssetView asset;  // as much of it as a lobe depends on
-    asset.roughness = scene.asset.roughness;
-    const SpecularLobe lobe = specular_lobe(&light, asset, primitive);
-    const bool shows = lobe.radiance != nullptr && has_any(scene.terms, TermSet::specular);
-    set_light_from_world(scene.mirror_rotation, program, kLightFromWorld);
+void set_mirroring(const DrawScene& scene, GLuint program, std::uint32_t primitive) {
+    const MirroredLight::Lobe lobe = scene.gl.mirrored.lobe_of(primitive);
+    set_light_from_world(scene.gl.mirrored.rotation(), program, kLightFromWorld);
     glProgramUniform2f(program, kLobe, lobe.cosine, lobe.sine);
-    glProgramUniform1ui(program, kHasSpecular, shows ? 1u : 0u);
-    for (std::size_t i = 0; i < light.maps.size(); ++i) {
-        if (&light.maps[i].radiance == lobe.radiance) {
-            glBindTextureUnit(1, scene.specular.texture[i].name());
-        }
-    }
+    glProgramUniform1ui(program, kHasSpecular, has_any(scene.terms, TermSet::specular) ? 1u : 0u);
+    glBindTextureUnit(1, lobe.texture);
 }
 
-// Nothing where there is none of that number.
-void bind_image(const DrawScene& scene, GLuint unit, GLuint program, GLint location,
-                std::uint32_t image, formats::Wrap wrap_u, formats::Wrap wrap_v) {
-    if (image >= scene.asset.images.size()) return;
-    glBindTextureUnit(unit, scene.asset.images[image].name());
-    glProgramUniform2i(program, location, static_cast<GLint>(wrap_u), static_cast<GLint>(wrap_v));
+// Nothing where there is none.
+void bind_image(GLuint unit, GLuint program, GLint location, const opaline_gl_image& image) {
+    if (image.texture == 0) return;
+    glBindTextureUnit(unit, image.texture);
+    glProgramUniform2iv(program, location, 1, image.wrap);
 }
 
 void set_gloss(const DrawScene& scene, GLuint program, const formats::GlossRecord& gloss) {
-    const GlSpecular& specular = scene.specular;
-    set_light_from_world(scene.mirror_rotation, program, kLightFromWorld);
+    set_light_from_world(scene.gl.mirrored.rotation(), program, kLightFromWorld);
     glProgramUniform1ui(program, kHasSpecular, has_any(scene.terms, TermSet::specular) ? 1u : 0u);
     glProgramUniform4f(program, kF0F90, gloss.f0.r, gloss.f0.g, gloss.f0.b, gloss.f90);
     glProgramUniform2f(program, kMetallicRoughness, gloss.metallic, gloss.roughness);
-    glProgramUniform1i(program, kSuns, specular.suns_count);
-    glBindTextureUnit(2, specular.light_maps.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, specular.cells.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, specular.suns.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 3, specular.albedo.name());
-    bind_image(scene, 3, program, kGlossWrap, gloss.image, gloss.wrap_u, gloss.wrap_v);
+    const opaline_gl_objects& objects = scene.gl.objects;
+    glBindTextureUnit(2, objects.light_maps);
+    const std::array<GLuint, 3> tables{objects.cells, objects.sun_table, objects.albedo};
+    glBindTextures(8, static_cast<GLsizei>(tables.size()), tables.data());
 }
 
-void set_own_light(const DrawScene& scene, GLuint program, std::size_t primitive) {
-    const bool shows = !scene.own.empty();
-    set_vec3(program, kOwnLight,
-             shows ? formats::Vec3{scene.own[primitive].r, scene.own[primitive].g,
-                                   scene.own[primitive].b}
-                   : formats::Vec3{});
-    const formats::OwnLight* const own = own_light_of(scene.asset, primitive);
-    bind_image(scene, 4, program, kOwnWrap, own->image, own->wrap_u, own->wrap_v);
+void set_own_light(const DrawScene& scene, GLuint program, std::uint32_t primitive) {
+    const formats::Rgb own = scene.own.empty() ? formats::Rgb{} : scene.own[primitive];
+    set_vec3(program, kOwnLight, {own.r, own.g, own.b});
 }
 
-void set_hole(const DrawScene& scene, const TileGrid& grid, GLuint program,
-              const formats::HoleRecord& hole) {
+void set_hole(const TileGrid& grid, GLuint program, const formats::HoleRecord& hole) {
     glProgramUniform3f(program, kHole, hole.alpha, hole.cutoff, static_cast<float>(hole.mode));
     glProgramUniform2ui(program, kFirstSample, static_cast<GLuint>(grid.first_column),
                         static_cast<GLuint>(grid.first_row));
@@ -242,36 +205,21 @@ void set_hole(const DrawScene& scene, const TileGrid& grid, GLuint program,
         const formats::ClearShare clear = formats::clear_share_of(hole);
         glProgramUniform2f(program, kHoleClear, clear.share, clear.eta);
     }
-    bind_image(scene, 5, program, kHoleWrap, hole.image, hole.wrap_u, hole.wrap_v);
 }
 
-void set_normal_map(const DrawScene& scene, GLuint program, const formats::NormalMapRecord& map) {
-    bind_image(scene, 6, program, kNormalWrap, map.image, map.wrap_u, map.wrap_v);
+void set_normal_map(GLuint program, const opaline_gl_normal_map& map) {
+    bind_image(6, program, kNormalWrap, map.image);
     glProgramUniform1f(program, kNormalScale, map.scale);
-}
-
-void set_turned_light(const TurnedLight& light, GLuint program) {
-    const auto set = [&](GLint location, formats::Rgb c) {
-        set_vec3(program, location, {c.r, c.g, c.b});
+    if (map.is_turned == 0) return;
+    const auto set = [&](GLint location, GLsizei count, const float* values) {
+        glProgramUniform3fv(program, location, count, values);
     };
-    for (std::size_t k = 0; k < light.harmonics.size(); ++k) {
-        set(kTurnedLight + static_cast<GLint>(k), light.harmonics[k]);
-    }
-    set(kTurnedLeast, light.least);
-    glProgramUniform1i(program, kTurnedSuns, static_cast<GLint>(light.suns.size()));
-    for (std::size_t i = 0; i < light.suns.size(); ++i) {
-        const auto at = static_cast<GLint>(i);
-        set_vec3(program, kTurnedSunDirection + at, light.suns[i].direction);
-        set(kTurnedSunLight + at, light.suns[i].light);
-    }
-}
-
-// Before the first light there is none to turn.
-const TurnedLight& turned_light_of(const DrawScene& scene, std::size_t primitive) {
-    static const TurnedLight kNone;
-    const TurnedLight* const light =
-        scene.turned == nullptr ? nullptr : scene.turned->of(primitive);
-    return light == nullptr ? kNone : *light;
+    set(kTurnedLight, 9, map.harmonics[0]);
+    set(kTurnedLeast, 1, map.least);
+    glProgramUniform1i(program, kTurnedSuns, map.suns);
+    if (map.suns == 0) return;
+    set(kTurnedSunDirection, map.suns, map.sun_direction[0]);
+    set(kTurnedSunLight, map.suns, map.sun_light[0]);
 }
 
 void draw_triangles(const formats::PrimitiveRecord& primitive) {
@@ -288,54 +236,90 @@ void draw_triangles(const formats::PrimitiveRecord& primitive) {
     }
 }
 
+void bind_attribute(GLuint array, GLuint attribute, GLuint buffer, GLint numbers, GLenum type,
+                    GLsizei stride, GLuint offset = 0) {
+    if (buffer == 0) return;
+    glVertexArrayVertexBuffer(array, attribute, buffer, 0, stride);
+    glVertexArrayAttribFormat(array, attribute, numbers, type, type != GL_FLOAT, offset);
+    glVertexArrayAttribBinding(array, attribute, attribute);
+    glEnableVertexArrayAttrib(array, attribute);
+}
+
+// Integers are scaled to [-1, 1] or [0, 1] on the way.
+GlVertexArray make_vertex_array(const GlAsset& gl, bool has_openness) {
+    GLuint name = 0;
+    glCreateVertexArrays(1, &name);
+    const opaline_gl_objects& objects = gl.objects;
+    bind_attribute(name, 0, objects.position, 3, GL_FLOAT, sizeof(formats::Vec3));
+    bind_attribute(name, 1, objects.radiance, 3, GL_FLOAT, kRadianceBytes);
+    bind_attribute(name, 2, objects.base_color, 3, GL_FLOAT, sizeof(formats::Rgb));
+    bind_attribute(name, 3, objects.texcoord, 2, GL_FLOAT, sizeof(formats::Float2));
+    bind_attribute(name, 4, objects.normal, 3, GL_FLOAT, sizeof(formats::Vec3));
+    if (has_openness) {  // the octahedral axis, and the fraction
+        constexpr GLsizei kStride = sizeof(formats::Openness);
+        bind_attribute(name, 5, objects.openness, 2, GL_BYTE, kStride);
+        bind_attribute(name, 6, objects.openness, 1, GL_UNSIGNED_BYTE, kStride,
+                       offsetof(formats::Openness, fraction));
+    }
+    bind_attribute(name, 7, gl.images.vertex_alpha(), 1, GL_FLOAT, sizeof(float));
+    bind_attribute(name, 8, gl.images.tangent(), 3, GL_SHORT, sizeof(formats::Tangent));
+    glVertexArrayElementBuffer(name, objects.triangle);
+    return GlVertexArray(name);
+}
+
 }  // namespace
 
-formats::Result<SurfacePrograms> make_surface_programs(const GlAsset& asset) {
+formats::Result<SurfacePrograms> make_surface_programs(const formats::AssetView& asset,
+                                                       GlAsset& gl) {
     SurfacePrograms programs;
-    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
-        const SurfaceKind kind = surface_kind(asset, p);
-        GlProgram& program = programs.program[kind.to_ulong()];
-        if (program.name() != 0) continue;
+    const std::string vertex = std::string(openness_text) + surface_vert_text;
+    bool has_openness = false;
+    for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
+        const SurfaceKind kind = surface_kind(asset, gl, p);
+        has_openness = has_openness || kind[kMirroring] || kind[kGlossy];
+        GLuint& program = programs.program[kind.to_ulong()];
+        if (program != 0) continue;
         const std::string fragment = fragment_text(kind);
-        const std::string vertex = std::string(openness_text) + surface_vert_text;
-        const std::array<StageSource, 2> stages{
-            {{GL_VERTEX_SHADER, vertex.c_str()}, {GL_FRAGMENT_SHADER, fragment.c_str()}}};
-        auto made =
-            make_program("surface", defines_of(kind, asset.vertex_alpha.name() != 0), stages);
+        const auto made =
+            make_program(gl.names, "surface", defines_of(kind, gl.images.vertex_alpha() != 0),
+                         vertex.c_str(), fragment.c_str());
         if (!made) return made.error();
-        program = std::move(made).value();
+        program = *made;
     }
+    programs.vertices = make_vertex_array(gl, has_openness);
     return programs;
 }
 
 void draw_surfaces(const DrawScene& scene, const SurfacePrograms& programs, const TileView& view) {
-    const GlAsset& asset = scene.asset;
-    for (const GlProgram& program : programs.program) {
-        if (program.name() != 0) set_view(scene, view, program.name());
+    const formats::AssetView& asset = scene.asset;
+    for (const auto& [kind, program] : programs.program) {
+        set_view(scene, view, program);
     }
     glDepthFunc(GL_GREATER);
-    glBindVertexArray(asset.vertex_array.name());
-    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, asset.srgb_table.name());
+    glBindVertexArray(programs.vertices.name());
+    glBindTextureUnit(7, scene.gl.images.srgb_table());
     glFrontFace(GL_CW);  // y points down
     glCullFace(GL_BACK);
-    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+    for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
         const formats::PrimitiveRecord& primitive = asset.primitives[p];
-        const SurfaceKind kind = surface_kind(asset, p);
+        const SurfaceKind kind = surface_kind(asset, scene.gl, p);
+        const opaline_gl_images images = scene.gl.images.of(p);
         (primitive.shows_back() ? glDisable : glEnable)(GL_CULL_FACE);
-        const GLuint program = programs.program[kind.to_ulong()].name();
+        const GLuint program = programs.program.at(kind.to_ulong());
         glUseProgram(program);
-        bind_image(scene, 0, program, kWrap, primitive.base_color_image, primitive.wrap_u,
-                   primitive.wrap_v);
+        bind_image(0, program, kWrap, images.base_color);
+        bind_image(3, program, kGlossWrap, images.gloss);
+        bind_image(4, program, kOwnWrap, images.emission);
+        bind_image(5, program, kHoleWrap, images.alpha);
         if (kind[kTranslucent]) glUniform1f(kEta, primitive.eta);
         if (has_view(kind)) {
             glUniform1ui(kIsDoubleSided, primitive.flags & formats::PrimitiveRecord::kDoubleSided);
         }
         glUniform1f(kShown, is_shown(primitive, scene.terms) ? 1.0f : 0.0f);
         if (kind[kMirroring]) set_mirroring(scene, program, p);
-        if (kind[kGlossy]) set_gloss(scene, program, asset.gloss[p]);
-        if (kind[kHasHoles]) set_hole(scene, view.grid, program, *hole_of(asset, p));
-        if (kind[kNormalMapped]) set_normal_map(scene, program, *normal_map_of(asset, p));
-        if (kind[kTurned]) set_turned_light(turned_light_of(scene, p), program);
+        if (kind[kGlossy]) set_gloss(scene, program, scene.gl.gloss[p]);
+        if (kind[kHasHoles]) set_hole(view.grid, program, *asset.holes.of(p));
+        if (kind[kNormalMapped]) set_normal_map(program, scene.gl.images.normal_map_of(p));
         if (kind[kGlows]) set_own_light(scene, program, p);
         draw_triangles(primitive);
     }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <ranges>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "formats/opal/rgb.h"
@@ -35,22 +38,12 @@ class DataScript {
   public:
     explicit DataScript(std::string owner) : owner_(std::move(owner)) {}
 
-    void put(std::string_view name, std::span<const std::uint8_t> values) {
-        add(name, "u8", values);
+    /// Numbers: a vector, span or array of them.
+    template <std::ranges::contiguous_range Values>
+    void put(std::string_view name, const Values& values) {
+        add(name, type_name<std::ranges::range_value_t<Values>>(),
+            std::as_bytes(std::span(values)));
     }
-    void put(std::string_view name, std::span<const std::int8_t> values) {
-        add(name, "i8", values);
-    }
-    void put(std::string_view name, std::span<const std::int16_t> values) {
-        add(name, "i16", values);
-    }
-    void put(std::string_view name, std::span<const std::uint16_t> values) {
-        add(name, "u16", values);
-    }
-    void put(std::string_view name, std::span<const std::uint32_t> values) {
-        add(name, "u32", values);
-    }
-    void put(std::string_view name, std::span<const float> values) { add(name, "f32", values); }
     /// Records as they stand in the file (formats/README.md), as words of four bytes.
     template <class Record>
     void put_records(std::string_view name, std::span<const Record> records) {
@@ -68,8 +61,11 @@ class DataScript {
 
   private:
     template <class T>
-    void add(std::string_view name, const char* type, std::span<const T> values) {
-        add(name, type, std::as_bytes(values));
+    static constexpr const char* type_name() {
+        static_assert(std::is_same_v<T, float> || std::is_integral_v<T>);
+        if constexpr (std::is_same_v<T, float>) return "f32";
+        constexpr std::array kUnsigned{"u8", "u16", "u32"}, kSigned{"i8", "i16", "i32"};
+        return (std::is_signed_v<T> ? kSigned : kUnsigned)[sizeof(T) / 2];
     }
     void add(std::string_view name, const char* type, std::span<const std::byte> bytes);
 

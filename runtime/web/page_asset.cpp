@@ -22,7 +22,7 @@ std::span<const float> floats_of(std::span<const T> values) {
 
 // `of`: what begins the names.
 void put_rows(DataScript& script, const std::string& of, const formats::SparseRowsView& rows) {
-    script.put(of + "code bits", std::span<const std::uint32_t>(&rows.code_bits, 1));
+    script.put(of + "code bits", std::array{rows.code_bits});
     script.put(of + "row offset", rows.row_offset);
     script.put(of + "average scale", rows.average_scale);
     script.put(of + "detail scale", rows.detail_scale);
@@ -48,9 +48,9 @@ void put_volumes(DataScript& script, const formats::VolumesView& volumes) {
         terms.push_back(phase.terms);
         powers.insert(powers.end(), phase.power.begin(), phase.power.end());
     }
-    script.put("sun terms", std::span<const std::uint32_t>(terms));
-    script.put("sun powers", std::span<const float>(powers));
-    script.put("sun tables", std::span<const float>(pack_sun_tables(volumes)));
+    script.put("sun terms", terms);
+    script.put("sun powers", powers);
+    script.put("sun tables", pack_sun_tables(volumes));
     put_rows(script, "volume ", volumes.rows);
     script.put_records("glow", volumes.glow.record);
     script.put("glow bricks", volumes.glow.brick);
@@ -65,7 +65,7 @@ void put_images(DataScript& script, const AssetView& asset) {
         sizes.push_back(asset.images[i].height);
         script.put("image " + std::to_string(i), asset.images[i].rgb);
     }
-    script.put("image sizes", std::span<const std::uint32_t>(sizes));
+    script.put("image sizes", sizes);
 }
 
 void put_emitters(DataScript& script, const formats::EmittersView& emitters) {
@@ -99,7 +99,7 @@ void put_camera(DataScript& script, const AssetView& asset) {
                             static_cast<float>(bound_object(asset).radius),
                             static_cast<float>(upright.radius),
                             static_cast<float>(upright.half_height)};
-    script.put("camera", std::span<const float>(values));
+    script.put("camera", values);
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ std::string make_asset_script(const AssetView& asset) {
     script.put_records("normal maps", asset.normal_maps.record);
     script.put_records("tangents", asset.normal_maps.tangent);
     if (!asset.gloss.empty()) script.put("albedo", floats_of(formats::ggx_albedo_table()));
-    script.put("cubemap", std::span<const std::uint32_t>(&asset.cubemap_size, 1));
+    script.put("cubemap", std::array{asset.cubemap_size});
     put_rows(script, "", asset.transport);
     put_volumes(script, asset.volumes);
     if (!asset.clouds.empty()) put_layer(script, asset);

@@ -67,8 +67,8 @@ class PlanWriter {
         }
     }
     void put(DataScript& script) const {
-        script.put("plan steps", std::span<const std::uint32_t>(steps_));
-        script.put("plan values", std::span<const float>(values_));
+        script.put("plan steps", steps_);
+        script.put("plan values", values_);
     }
 
   private:
@@ -108,21 +108,12 @@ void put_radiosity(DataScript& script, const LayerLight& light) {
     }
     writer.put(script);
     const std::array<float, 2> step{grid.cell_x / kGroundSamples, grid.cell_z / kGroundSamples};
-    script.put("plan step", std::span<const float>(step));
+    script.put("plan step", step);
 }
 
 formats::Vec3 centre_of(const formats::AssetView& asset) {
     const BoundingSphere bound = bound_asset(asset);
     return {static_cast<float>(bound.x), static_cast<float>(bound.y), static_cast<float>(bound.z)};
-}
-
-void put_floats(DataScript& script, const std::string& name, const std::vector<float>& values) {
-    script.put(name, std::span<const float>(values));
-}
-
-void put_numbers(DataScript& script, const std::string& name,
-                 const std::vector<std::uint32_t>& values) {
-    script.put(name, std::span<const std::uint32_t>(values));
 }
 
 // Levels after each other, and their sizes.
@@ -136,8 +127,8 @@ void put_pictures(DataScript& script, const std::string& name,
             pixels.insert(pixels.end(), {pixel.r, pixel.g, pixel.b});
         }
     }
-    put_floats(script, name, pixels);
-    put_numbers(script, name + " sizes", sizes);
+    script.put(name, pixels);
+    script.put(name + " sizes", sizes);
 }
 
 // Puts all into one array; each begins at a number of its own.
@@ -149,8 +140,8 @@ void put_joined(DataScript& script, const std::string& name,
         first.push_back(static_cast<std::uint32_t>(all.size()));
         all.insert(all.end(), part.begin(), part.end());
     }
-    put_floats(script, name, all);
-    put_numbers(script, name + " first", first);
+    script.put(name, all);
+    script.put(name + " first", first);
 }
 
 void append_grid(const LayerGrid& grid, std::vector<float>& values) {
@@ -183,9 +174,9 @@ void put_light_points(DataScript& script, const formats::AssetView& asset) {
     for (const formats::Vec3 point : points.point) {
         places.insert(places.end(), {point.x, point.y, point.z});
     }
-    put_floats(script, "light points", places);
-    put_numbers(script, "light point of primitives", points.of_primitive);
-    put_numbers(script, "light point of volumes", {points.of_volumes});
+    script.put("light points", places);
+    script.put("light point of primitives", points.of_primitive);
+    script.put("light point of volumes", std::array{points.of_volumes});
 }
 
 }  // namespace
@@ -194,11 +185,11 @@ void put_layer(DataScript& script, const formats::AssetView& asset) {
     const LayerLight light = light_layers(asset.clouds, {}, {}, {.time = 0, .threads = 1});
     const LayerKind kind = layer_kind(light);
     const formats::LayerRecord& record = light.record;
-    put_numbers(script, "layer kind", {kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u});
-    put_numbers(script, "layer frames",
-                {record.columns, record.rows, record.frames, record.loops() ? 1u : 0u});
-    put_floats(script, "layer motion",
-               {record.highest, record.frame_seconds, record.wind[0], record.wind[1]});
+    script.put("layer kind", std::array{kind.repeats ? 1u : 0u, kind.modes, kind.glows ? 1u : 0u});
+    script.put("layer frames",
+               std::array{record.columns, record.rows, record.frames, record.loops() ? 1u : 0u});
+    script.put("layer motion",
+               std::array{record.highest, record.frame_seconds, record.wind[0], record.wind[1]});
     script.put("layer codes", asset.clouds.thickness_of(record));
     std::vector<float> means;
     for (const formats::LayerTables& tables : light.tables) {
@@ -222,7 +213,7 @@ void put_layer_light(DataScript& script, const LayerLight& light) {
     }
     values.push_back(static_cast<float>(places.base));
     values.push_back(static_cast<float>(places.ground_height));
-    put_floats(script, "layer places", values);
+    script.put("layer places", values);
 }
 
 }  // namespace opaline::runtime

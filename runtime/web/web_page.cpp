@@ -105,13 +105,13 @@ void put_discs(DataScript& script, const std::string& name,
                                      disc.radiance.r, disc.radiance.g, disc.radiance.b,
                                      static_cast<float>(formats::disc_solid_angle(radius))});
     }
-    script.put(name, std::span<const float>(values));
+    script.put(name, values);
 }
 
 void put_shining(DataScript& script, const Environment& environment, unsigned threads) {
     const DividedLight divided = divide_light(environment, threads);
     script.put_radiance("cube", divided.cube, kPageTexels, kDroppedOfLight);
-    script.put("points", std::span<const float>(divided.points));
+    script.put("points", divided.points);
     put_discs(script, "suns", divided.suns, false);
 }
 
@@ -127,8 +127,8 @@ void put_background(DataScript& script, const Environment& environment, unsigned
     const std::uint32_t shape[] = {layout, map.width, is_cube ? map.width : map.height,
                                    map.rows_include_poles ? 1u : 0u};
     const float turn[] = {map.u_offset, map.u_sign};
-    script.put("background.shape", std::span<const std::uint32_t>(shape));
-    script.put("background.turn", std::span<const float>(turn));
+    script.put("background.shape", shape);
+    script.put("background.turn", turn);
     script.put_radiance("background", map.pixel, map.width, kDroppedOfBackground);
 }
 
@@ -205,7 +205,7 @@ std::string make_light_script(const std::string& owner, const PageLight& light,
     put_shining(script, environment, threads);
     if (needs.gloss) {
         const std::vector<float> cells = make_cell_table(make_gloss_light(environment, threads));
-        script.put("cells", std::span<const float>(cells));
+        script.put("cells", cells);
     }
     for (const SpecularLight::Map& map :
          prefilter_specular(environment, needs.levels, {}, threads).maps) {

@@ -1,6 +1,5 @@
 #include "bake/cli/view/picture_painter.h"
 
-#define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
 
 #include <algorithm>

@@ -11,15 +11,10 @@ struct Disc {
     vec4 direction_chord;
     vec4 radiance;
 };
-#ifdef DATA_IN_TEXTURES
-uniform sampler2D disc_table;
+layout(binding = 4) uniform sampler2D disc_table;
 Disc disc_at(int i) {
     return Disc(texelFetch(disc_table, ivec2(0, i), 0), texelFetch(disc_table, ivec2(1, i), 0));
 }
-#else
-layout(std430, binding = 0) readonly buffer Discs { Disc disc[]; };
-Disc disc_at(int i) { return disc[i]; }
-#endif
 
 vec3 lat_long_texel(int column, int row, ivec2 size) {
     column = (column + size.x) % size.x;  // column >= -1; % of a negative number is undefined

@@ -11,8 +11,10 @@ struct Sun {
     vec4 direction_radius;
     vec4 radiance_solid_angle;
 };
-#ifdef DATA_IN_TEXTURES  // a row for each cell and sun, the table as it is
-uniform sampler2D cells, sun_table, albedo;
+// A row for each cell and sun, the table as it is.
+layout(binding = 8) uniform sampler2D cells;
+layout(binding = 9) uniform sampler2D sun_table;
+layout(binding = 10) uniform sampler2D albedo;
 int cell_count() { return textureSize(cells, 0).y; }
 Cell cell_at(int i) {
     return Cell(texelFetch(cells, ivec2(0, i), 0), texelFetch(cells, ivec2(1, i), 0));
@@ -21,17 +23,6 @@ Sun sun_at(int i) {
     return Sun(texelFetch(sun_table, ivec2(0, i), 0), texelFetch(sun_table, ivec2(1, i), 0));
 }
 vec2 albedo_entry(int column, int row) { return texelFetch(albedo, ivec2(column, row), 0).rg; }
-#else
-layout(std430, binding = 1) readonly buffer Cells { Cell cell[]; };
-layout(std430, binding = 2) readonly buffer Suns { Sun sun[]; };
-layout(std430, binding = 3) readonly buffer Albedo { vec2 albedo[]; };
-int cell_count() { return cell.length(); }
-Cell cell_at(int i) { return cell[i]; }
-Sun sun_at(int i) { return sun[i]; }
-vec2 albedo_entry(int column, int row) { return albedo[row * ALBEDO_COLUMNS + column]; }
-#endif
-
-layout(location = 18) uniform int suns;
 
 const float kLeastCosine = 1e-3, kLeastAlpha = 1e-3;
 
@@ -185,7 +176,7 @@ LobeIntegral sum_cells(vec2 table, float alpha, Frame f) {
 }
 
 void add_suns(float alpha, Frame f, inout LobeIntegral result) {
-    for (int i = 0; i < suns; ++i) {
+    for (int i = 0; i < textureSize(sun_table, 0).y; ++i) {
         Sun sun = sun_at(i);
         vec3 direction = sun.direction_radius.xyz;
         float radius = sun.direction_radius.w;

@@ -1,14 +1,8 @@
 // Bilinear or nearest samples of 8-bit images, as runtime/texture.cpp has them. Codes and a table instead of an
 // sRGB format: hardware may filter before or after decoding and at its own precision; the CPU decodes
-// exactly and filters afterwards. DATA_IN_TEXTURES, here and elsewhere: contexts without storage
-// buffers in this stage keep arrays in textures.
-#ifdef DATA_IN_TEXTURES
-uniform sampler2D srgb_table;
+// exactly and filters afterwards.
+layout(binding = 7) uniform sampler2D srgb_table;
 float linear_from_srgb(uint code) { return texelFetch(srgb_table, ivec2(code, 0), 0).r; }
-#else
-layout(std430, binding = 0) readonly buffer Decode { float srgb_table[256]; };
-float linear_from_srgb(uint code) { return srgb_table[code]; }
-#endif
 
 int wrap_texel(int i, int size, int mode) {
     if (mode == WRAP_CLAMP) return clamp(i, 0, size - 1);

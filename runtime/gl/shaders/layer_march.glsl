@@ -2,15 +2,8 @@
 // clouds/layer_march.cpp have it. layer_tables.glsl comes before it. Places are offsets from the
 // eye along x and z [m].
 // Its levels one after the other, x fastest [m].
-#ifdef DATA_IN_TEXTURES
-uniform sampler2D thickness_values;
+layout(binding = 12) uniform sampler2D thickness_values;
 float thickness_value(int i) { return value_of(thickness_values, i); }
-#else
-layout(std430, binding = 7) readonly buffer Thickness { float thickness_texels[]; };
-float thickness_value(int i) { return thickness_texels[i]; }
-layout(location = 10) uniform vec2 field_origin;     // the eye's place in the thickness, [0, 1]
-layout(location = 11) uniform float eye_above_base;  // [m]
-#endif
 
 const float kFarthest = 1e8, kNever = 1e38;
 const int kSteps = 48;

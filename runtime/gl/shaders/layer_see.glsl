@@ -1,15 +1,8 @@
 // What a ray sees of a layer and of the ground, as clouds/see_layer.cpp and clouds/see_ground.cpp
 // have it. layer_march.glsl comes before it.
-#ifdef DATA_IN_TEXTURES
-uniform sampler2D albedo_map, ground_light, base_light;
-#else
 layout(binding = 5) uniform sampler2D albedo_map;
 layout(binding = 6) uniform sampler2D ground_light;
 layout(binding = 7) uniform sampler2D base_light;
-layout(location = 13) uniform vec2 albedo_origin;      // the eye's place in the albedo, [0, 1]
-layout(location = 14) uniform vec2 light_origin;       // and in the grids of light
-layout(location = 15) uniform float eye_above_ground;  // [m]
-#endif
 
 // Bilinear in a level; beyond the edges the same again, or the outermost texels.
 vec3 sample_image(sampler2D image, vec2 uv, ivec2 size, int level) {
@@ -47,7 +40,7 @@ vec3 albedo_at(vec2 place, float footprint) {
 
 vec3 see_ground(vec2 place, float footprint) {
     vec3 irradiance = light_at(ground_light, place);
-    for (int i = 0; i < SUNS; ++i) {
+    for (int i = 0; i < radiance_counts.z; ++i) {
         vec4 shadow = suns[i].shadow;
         float thickness = thickness_at(place + shadow.xy, field_level(max(shadow.z, footprint)));
         irradiance += suns[i].direction_cosine.y * suns[i].irradiance_radius.rgb *
@@ -68,7 +61,7 @@ vec3 slab_source(vec3 direction, vec3 depth, vec2 place, vec3 normal, bool trans
     vec3 across = crossing_share(depth, mu_v), ground = light_at(base_light, place);
     vec3 ahead = transmitted ? sky_irradiance.rgb : ground;
     vec3 source = (across * ahead + (1.0 - across) * (transmitted ? ground : sky_irradiance.rgb)) / kPi;
-    for (int i = 0; i < SUNS; ++i) {
+    for (int i = 0; i < radiance_counts.z; ++i) {
         vec3 l = suns[i].direction_cosine.xyz, single;
         float light = clamp(dot(normal, l), kLeastCosine, 1.0);
         float mu_view = clamp(abs(dot(normal, direction)), kLeastCosine, 1.0);
@@ -118,7 +111,7 @@ vec3 own_source(LayerRay ray, LayerMarch march) {
 vec3 glow_along(vec3 direction, vec3 depth) {
     vec3 sum = vec3(0.0);
 #if GLOW
-    for (int i = 0; i < SUNS; ++i) {
+    for (int i = 0; i < radiance_counts.z; ++i) {
         float angle = scattering_angle(suns[i].direction_cosine.xyz, direction);
         vec3 events = peak_weight.rgb / (1.0 - peak_weight.rgb) * depth, part;
         for (int b = 0; b < 3; ++b) {

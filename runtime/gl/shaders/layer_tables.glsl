@@ -5,11 +5,7 @@ struct LayerSun {
     vec4 irradiance_radius;
     vec4 shadow;             // from the ground to the base along x and z, blur [m]
 };
-#ifdef DATA_IN_TEXTURES
 layout(std140) uniform Layer {
-#else
-layout(std430, binding = 1) readonly buffer Layer {
-#endif
     vec4 rest_kappa_peak;    // kappa_S by band [1/m], theta_f [rad]
     vec4 kappa_haze;         // kappa by band, haze [1/m]
     vec4 peak_weight;        // P_f by band
@@ -26,14 +22,15 @@ layout(std430, binding = 1) readonly buffer Layer {
     ivec4 radiance_counts;   // depths, cosines, suns
     ivec4 level_first[4];    // first texel of a level of the thickness
     LayerSun suns[2];
-#ifdef DATA_IN_TEXTURES
     ivec4 value_first;       // of t_ms, glow; of the flux of suns
     vec2 field_origin, albedo_origin, light_origin;  // the eye's places, in [0, 1]
     float eye_above_base, eye_above_ground;          // [m]
-#endif
 };
-#ifdef DATA_IN_TEXTURES  // of 2048 columns
-uniform sampler2D table_values, sun_values;
+// Of 2048 columns. Logarithms of the phase function [angle][band], t_ms [band][depth][cosine], glow
+// [band][event][angle].
+layout(binding = 10) uniform sampler2D table_values;
+// [sun][side][mode][depth][view][band]; and of each sun's flux T_ms, T_1: [sun][depth][band][2]
+layout(binding = 11) uniform sampler2D sun_values;
 float value_of(sampler2D values, int i) {
     return texelFetch(values, ivec2(i & 2047, i >> 11), 0).r;
 }
@@ -45,19 +42,6 @@ vec2 sun_flux_at(int i) {
     int at = value_first.z + 2 * i;
     return vec2(value_of(sun_values, at), value_of(sun_values, at + 1));
 }
-#else
-layout(std430, binding = 2) readonly buffer Phase { float log_phase[]; };  // [angle][band]
-layout(std430, binding = 3) readonly buffer Flux { float t_ms[]; };  // [band][depth][cosine]
-layout(std430, binding = 4) readonly buffer Glow { float glow[]; };  // [band][event][angle]
-// [sun][side][mode][depth][view][band]; and of each sun's flux T_ms, T_1: [sun][depth][band][2]
-layout(std430, binding = 5) readonly buffer SunTables { float sun_table[]; };
-layout(std430, binding = 6) readonly buffer SunFlux { vec2 sun_flux[]; };
-float log_phase_at(int i) { return log_phase[i]; }
-float t_ms_at(int i) { return t_ms[i]; }
-float glow_at(int i) { return glow[i]; }
-float sun_table_at(int i) { return sun_table[i]; }
-vec2 sun_flux_at(int i) { return sun_flux[i]; }
-#endif
 
 const float kLeastCosine = 1e-3;
 

@@ -13,7 +13,7 @@ struct Volume {
 };
 // Density: of each brick the scale, then 8 x 9 x 9 pairs of codes: of a voxel and of the next along x.
 // Coefficients: R, G, B; relight_volumes.h. Phases: sun_phase.h, phase_table.h.
-#ifdef DATA_IN_TEXTURES  // of 2048 columns
+// Arrays stand in textures of 2048 columns. RECORDS_IN_BLOCK: the volumes in a uniform block.
 #ifdef RECORDS_IN_BLOCK
 layout(std140) uniform VolumeRecords {
     Volume volumes[VOLUMES];
@@ -24,11 +24,18 @@ layout(std140) uniform VolumeRecords {
 };
 #else
 uniform Volume volumes[VOLUMES];
-#endif
-uniform usampler2D brick_numbers, density_codes, corner_numbers;
-uniform sampler2D node_light, phase_entries;
+uniform vec3 suns[SUNS];
 #if GLOW
-uniform usampler2D glow_words;
+uniform vec4 glow_colors[VOLUMES];
+#endif
+#endif
+layout(binding = 4) uniform usampler2D brick_numbers;
+layout(binding = 5) uniform usampler2D density_codes;
+layout(binding = 6) uniform usampler2D corner_numbers;
+layout(binding = 7) uniform sampler2D node_light;
+layout(binding = 8) uniform sampler2D phase_entries;
+#if GLOW
+layout(binding = 9) uniform usampler2D glow_words;
 #endif
 ivec2 place_of(uint i) { return ivec2(i & 2047u, i >> 11); }
 uint brick_at(uint cell) { return texelFetch(brick_numbers, place_of(cell), 0).r; }
@@ -39,39 +46,14 @@ float phase_at(uint i) { return texelFetch(phase_entries, place_of(i), 0).r; }
 #if GLOW
 uint glow_word(uint i) { return texelFetch(glow_words, place_of(i), 0).r; }
 #endif
-#else
-layout(std430, binding = 0) readonly buffer Volumes { Volume volumes[]; };
-layout(std430, binding = 1) readonly buffer Table { uint brick_table[]; };
-layout(std430, binding = 2) readonly buffer Density { uint density_words[]; };
-layout(std430, binding = 3) readonly buffer Corners { uint corner_nodes[]; };
-layout(std430, binding = 4) readonly buffer Coefficients { float coefficients[]; };
-layout(std430, binding = 5) readonly buffer Phases { float phase[]; };
-uint brick_at(uint cell) { return brick_table[cell]; }
-uint density_word(uint i) { return density_words[i]; }
-uint node_at(uint corner) { return corner_nodes[corner]; }
-vec3 coefficient_at(uint i) { return vec3(coefficients[i], coefficients[i + 1u], coefficients[i + 2u]); }
-float phase_at(uint i) { return phase[i]; }
-#if GLOW
-layout(std430, binding = 6) readonly buffer Glow { uint glow_codes[]; };
-uint glow_word(uint i) { return glow_codes[i]; }
-#endif
-#endif
 #if VOLUMES == 1
 int lowest_bit(uint bits) { return 0; }  // known to compilers, which then keep arrays in registers
-#elif defined(DATA_IN_TEXTURES)
+#else
 int lowest_bit(uint bits) {
     int bit = 0;
     while (bit < VOLUMES && (bits >> bit & 1u) == 0u) ++bit;
     return bit;
 }
-#else
-int lowest_bit(uint bits) { return findLSB(bits); }
-#endif
-#ifndef RECORDS_IN_BLOCK
-layout(location = 7) uniform vec3 suns[SUNS];  // as in the block
-#if GLOW
-layout(location = 17) uniform vec4 glow_colors[VOLUMES];
-#endif
 #endif
 
 const uint kNone = 0xffffffffu;  // no brick, no node

@@ -19,8 +19,8 @@ vec3 direction_at(int face, vec2 at) {
 
 // The layer's suns, then the sky's discs: direction, width.
 vec4 disc_ray(int i) {
-    if (i < SUNS) return vec4(suns[i].direction_cosine.xyz, 2.0 * suns[i].irradiance_radius.a);
-    vec4 disc = disc_at(i - SUNS).direction_chord;
+    if (i < radiance_counts.z) return vec4(suns[i].direction_cosine.xyz, 2.0 * suns[i].irradiance_radius.a);
+    vec4 disc = disc_at(i - radiance_counts.z).direction_chord;
     return vec4(normalize(disc.xyz * light_from_world), 2.0 * disc.w);
 }
 
@@ -37,7 +37,7 @@ void main() {
         for (int i = 0; i < 4; ++i) {
             behind += 0.25 * sky_rest(direction_at(face, texel + 0.25 + 0.5 * vec2(i & 1, i >> 1)));
         }
-    } else if (here.x < SUNS + discs) {
+    } else if (here.x < radiance_counts.z + discs) {
         wanted = disc_ray(here.x);
     }
     LayerRay ray = LayerRay(vec3(0.0), wanted.xyz, 0.0, kNever, wanted.w);
@@ -49,6 +49,6 @@ void main() {
     }
     SeenLayer seen = see_layer(ray, to_sky);
     vec3 sum = seen.radiance + seen.glow + seen.transmittance * behind;
-    if (is_disc) sum = here.x < SUNS ? seen.sun_transmittance : seen.transmittance;
+    if (is_disc) sum = here.x < radiance_counts.z ? seen.sun_transmittance : seen.transmittance;
     color = vec4(tame(sum.r), tame(sum.g), tame(sum.b), 1.0);
 }

@@ -93,7 +93,7 @@ const Draw = (() => {
         unit: frame.unit, near_plane: frame.unit * frame.near,
         tile: [...scale, scale[0] - 2 * grid.firstColumn / grid.tileColumns - 1,
                scale[1] - 2 * grid.firstRow / grid.tileRows - 1],
-        light_from_world: SceneLight.lightFromWorld(layer === null ? turn : 0), suns: mirrored?.suns ?? 0,
+        light_from_world: SceneLight.lightFromWorld(layer === null ? turn : 0),
         first_sample: [grid.firstColumn, grid.firstRow] };
       gl.enable(gl.DEPTH_TEST);
       gl.bindVertexArray(objects.array);

@@ -19,7 +19,7 @@ const Gl = (() => {
         .replace(new RegExp(`layout\\(location = \\d+\\) ${passed} `, "g"), `${passed} `);
   }
 
-  const kHead = "#version 300 es\n#define DATA_IN_TEXTURES\n" +
+  const kHead = "#version 300 es\n" +
       ["float", "int", "sampler2D", "sampler2DArray", "usampler2D"]
           .map(type => `precision highp ${type};\n`).join("");
 

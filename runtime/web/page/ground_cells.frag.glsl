@@ -35,7 +35,7 @@ void main() {
         send += mean * sky_irradiance.rgb;
         reflected += 1.0 - mean;
         ground += albedo_at(place, footprint);
-        for (int i = 0; i < SUNS; ++i) {
+        for (int i = 0; i < radiance_counts.z; ++i) {
             vec4 shadow = suns[i].shadow;
             vec3 flux = suns[i].direction_cosine.y * suns[i].irradiance_radius.rgb, scattered;
             for (int b = 0; b < 3; ++b) scattered[b] = scattered_share(i, b, depth[b]);

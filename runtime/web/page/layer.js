@@ -160,8 +160,7 @@ const Layer = (() => {
     return list;
   }
 
-  const defines = layer => [["REPEAT", layer.repeats], ["MODES", layer.modes], ["GLOW", layer.glows],
-                            ["SUNS", "radiance_counts.z"], ["FORWARD_DEPTH", ""]];
+  const defines = layer => [["REPEAT", layer.repeats], ["MODES", layer.modes], ["GLOW", layer.glows], ["FORWARD_DEPTH", ""]];
 
   // The uniform block Layer of a light, turned as its `record` is, seen from there at a time.
   function block(layer, light, record, eye, time) {

@@ -170,7 +170,7 @@ const Objects = (() => {
 
   // What surfaces mirror: `blurred` maps by level of roughness; for gloss a cube map, cells and suns.
   function makeMirrored(gl, { blurred, cube, cells, suns }) {
-    return { blurred, suns: suns.length / 8, sunTable: makePairs(gl, suns), cells: makePairs(gl, cells),
+    return { blurred, sunTable: makePairs(gl, suns), cells: makePairs(gl, cells),
              maps: cube === null ? null : makeLayers(gl, Light.kSide, Light.kSide, 6, cube, 8) };
   }
 

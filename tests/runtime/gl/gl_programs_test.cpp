@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 
 #include "runtime/gl/egl_context.h"
 #include "runtime/gl/gl_draw.h"
-#include "runtime/gl/gl_relight.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
@@ -21,6 +21,13 @@ using test::text_of;
 
 class GlPrograms : public test::Gl {
   protected:
+    struct Release {
+        void operator()(GlAsset* gl) const {
+            gl->names.release();
+            delete gl;
+        }
+    };
+
     void SetUp() override {
         Gl::SetUp();
         if (!IsSkipped()) {
@@ -32,10 +39,15 @@ class GlPrograms : public test::Gl {
         }
     }
 
-    static GlRelight relight(const formats::Asset& asset) {
-        auto made = GlRelight::create(asset.view(), {.lanes_per_row = 8});
-        EXPECT_TRUE(made) << text_of(made.error());
-        return std::move(*made);
+    // With what the renderer uploads.
+    static std::unique_ptr<GlAsset, Release> upload(const formats::Asset& asset) {
+        std::unique_ptr<GlAsset, Release> gl(new GlAsset);
+        EXPECT_EQ(load_gl_functions(EglContext::load_function, gl->gl), OPALINE_OK);
+        EXPECT_EQ(gl->upload(asset.view(), OPALINE_GL_WITH_MESH | OPALINE_GL_WITH_IMAGES,
+                             {.lanes_per_row = 8}),
+                  OPALINE_OK)
+            << opaline_last_error();
+        return gl;
     }
 
     static Names active(GLuint program, GLenum kind) {
@@ -51,8 +63,8 @@ class GlPrograms : public test::Gl {
         return names;
     }
 
-    static std::ptrdiff_t dots(const GlRelight& relight) {
-        return std::ranges::count_if(relight.relight().dot_programs(),
+    static std::ptrdiff_t dots(const Relight& relight) {
+        return std::ranges::count_if(relight.dot_programs(),
                                      [](GLuint program) { return program != 0; });
     }
 
@@ -60,17 +72,14 @@ class GlPrograms : public test::Gl {
     // they have beside those of plain ones.
     static void expect_surfaces(const formats::Asset& scene, std::size_t sums,
                                 const std::map<std::size_t, Names>& more) {
-        const GlRelight relit = relight(scene);
-        EXPECT_EQ(relit.relight().sums().size(), sums);
-        EXPECT_EQ(relit.relight().needs_eye(), sums > 0);
-        const auto asset = upload_asset(scene.view(), relit.relight().radiance());
-        ASSERT_TRUE(asset) << text_of(asset.error());
-        const auto draws = make_draw_programs(*asset, {});
+        const auto gl = upload(scene);
+        EXPECT_EQ(gl->relight.sums().size(), sums);
+        EXPECT_EQ(gl->relight.needs_eye(), sums > 0);
+        const auto draws = make_draw_programs(scene.view(), *gl);
         ASSERT_TRUE(draws) << text_of(draws.error());
-        for (std::size_t i = 0; i < draws->surfaces.program.size(); ++i) {
-            const GLuint program = draws->surfaces.program[i].name();
-            ASSERT_EQ(program != 0, more.contains(i)) << i;
-            if (program == 0) continue;
+        EXPECT_EQ(draws->surfaces.program.size(), more.size());
+        for (const auto& [i, program] : draws->surfaces.program) {
+            ASSERT_TRUE(more.contains(i)) << i;
             Names uniforms{"eye",  "right",      "down", "forward",
                            "unit", "near_plane", "tile", "shown"};
             uniforms.insert(more.at(i).begin(), more.at(i).end());
@@ -78,9 +87,6 @@ class GlPrograms : public test::Gl {
             if (i > 0) continue;
             EXPECT_EQ(active(program, GL_PROGRAM_INPUT),
                       (Names{"position", "radiance", "base_color"}));
-        }
-        if (scene.gloss.empty() && scene.primitives[0].eta == 0) {
-            EXPECT_EQ(asset->normal.name() + asset->openness.name(), 0u);
         }
     }
 
@@ -101,7 +107,7 @@ TEST_F(GlPrograms, SurfacesHaveCodeForWhatTheyAreAlone) {
     expect_surfaces(make_sheet_of({.bands = 3, .eta = 1.3f}), 0, {{2, {"eta", "is_double_sided"}}});
     formats::Asset textured = make_sheet_of({.image = 0});
     textured.images.push_back(test::make_noise_image(3, 3));
-    expect_surfaces(textured, 0, {{1, {"base_color_image", "wrap"}}});
+    expect_surfaces(textured, 0, {{1, {"base_color_image", "wrap", "srgb_table"}}});
     // A matt one and a glossy one.
     formats::Asset glossy = make_sheet_of({});
     test::add_primitive(glossy, test::make_sheet({0, 0, 0}, {6, 0, 0}, {0, 0, -6}, 3, 1), {});
@@ -113,17 +119,17 @@ TEST_F(GlPrograms, SurfacesHaveCodeForWhatTheyAreAlone) {
                     {{0, {}},
                      {8,
                       {"is_double_sided", "light_from_world", "has_specular", "f0_f90",
-                       "metallic_roughness", "suns", "light_maps"}}});
+                       "metallic_roughness", "light_maps", "cells", "sun_table", "albedo"}}});
 }
 
 TEST_F(GlPrograms, GreyMediaHaveNoCodeForThreeBands) {
     for (const std::uint32_t terms : {1u, 4u}) {
-        const GlRelight grey = relight(make_sheet_of({.bands = 1, .eta = 1.3f, .terms = terms}));
-        const GlRelight colour = relight(make_sheet_of({.bands = 3, .eta = 1.3f, .terms = terms}));
-        EXPECT_EQ(dots(grey), 1);
-        EXPECT_NE(grey.relight().dot_programs()[2], 0u);
-        EXPECT_EQ(dots(colour), 1);
-        EXPECT_NE(colour.relight().dot_programs()[3], 0u);
+        const auto grey = upload(make_sheet_of({.bands = 1, .eta = 1.3f, .terms = terms}));
+        const auto colour = upload(make_sheet_of({.bands = 3, .eta = 1.3f, .terms = terms}));
+        EXPECT_EQ(dots(grey->relight), 1);
+        EXPECT_NE(grey->relight.dot_programs()[2], 0u);
+        EXPECT_EQ(dots(colour->relight), 1);
+        EXPECT_NE(colour->relight.dot_programs()[3], 0u);
     }
 }
 
@@ -133,14 +139,14 @@ TEST_F(GlPrograms, EachNumberOfTermsHasItsOwnSum) {
     test::add_primitive(scene, sheet, {.bands = 3, .eta = 1.3f, .terms = 4});
     test::add_primitive(scene, sheet, {.bands = 3, .eta = 1.4f, .terms = 4});
     test::add_primitive(scene, sheet, {.bands = 3, .eta = 1.3f, .terms = 2, .is_separate = true});
-    const GlRelight relit = relight(scene);
-    const auto sums = relit.relight().sums();
+    const auto gl = upload(scene);
+    const auto sums = gl->relight.sums();
     ASSERT_EQ(sums.size(), 2u);
     EXPECT_EQ(active(sums[0].program, GL_UNIFORM).count("eye"), 1u);
     // Two rows that look alike from everywhere.
     EXPECT_EQ(active(sums[1].program, GL_UNIFORM),
               (Names{"vertices", "product_origin", "radiance_origin", "shows"}));
-    EXPECT_EQ(dots(relit), 2);
+    EXPECT_EQ(dots(gl->relight), 2);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/gl/gl_volumes.h"
+#include "runtime/embed_gl/volume_tables.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/glow_support.h"
@@ -229,11 +229,6 @@ TEST_F(Gl, DamagedVolumesNeverReachThePicture) {
 }
 
 TEST_F(Gl, VolumesBeyondTheLimitsAreRefusedWithTheReason) {
-    const Asset asset = volumes_alone({smoke(8, 4, 4)});
-    const auto too_small = GlRenderer::create(asset.view(), kSky, {.max_block_bytes = 4096});
-    ASSERT_FALSE(too_small.has_value());
-    EXPECT_EQ(too_small.error().kind, formats::ErrorKind::resource);
-    EXPECT_NE(test::text_of(too_small.error()).find("density"), std::string::npos);
     const auto too_many = GlRenderer::create(
         volumes_alone(std::vector(kMaxGlVolumes + 1, smoke(8, 0, 0))).view(), kSky);
     ASSERT_FALSE(too_many.has_value());
