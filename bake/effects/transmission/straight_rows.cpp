@@ -55,7 +55,7 @@ class Splat {
 
     // Limits each texel's rows. What this takes from their sum over texels is returned to all
     // texels in proportion to their mean: each view shows as much of even light as before.
-    void limit(const ViewLimit& limit) {
+    void limit(const NonNegativeViews& limit) {
         const std::size_t texels = row_.size();
         std::vector<double> mean(texels), taken(terms_);
         for (std::uint32_t b = 0; b < row_.bands; ++b) {

@@ -190,8 +190,8 @@ void limit_fit(const TransmissionViews& views, std::uint32_t terms, std::span<co
     }
 }
 
-ViewLimit::ViewLimit(const TransmissionViews& views, glm::vec3 normal, double eta,
-                     std::uint32_t terms)
+NonNegativeViews::NonNegativeViews(const TransmissionViews& views, glm::vec3 normal, double eta,
+                                   std::uint32_t terms)
     : mean_(terms) {
     std::vector<double> value(terms);
     for (std::size_t i = 0; i < views.seen.size(); ++i) {
@@ -207,7 +207,7 @@ ViewLimit::ViewLimit(const TransmissionViews& views, glm::vec3 normal, double et
     }
 }
 
-double ViewLimit::apply(float* first, std::size_t stride) const {
+double NonNegativeViews::apply(float* first, std::size_t stride) const {
     const std::size_t terms = mean_.size();
     const auto sum_with = [&](const double* harmonic) {
         double sum = 0;

@@ -36,10 +36,11 @@ void limit_fit(const TransmissionViews& views, std::uint32_t terms, std::span<co
 
 /// Keeps what rows by view show of light from one direction >= 0 in every view (README.md,
 /// "Views"). Immutable once made.
-class ViewLimit {
+class NonNegativeViews {
   public:
     /// `terms` > 1.
-    ViewLimit(const TransmissionViews& views, glm::vec3 normal, double eta, std::uint32_t terms);
+    NonNegativeViews(const TransmissionViews& views, glm::vec3 normal, double eta,
+                     std::uint32_t terms);
     /// Scales rows k at first[k * stride], around their mean over the views, >= 0. Returns it.
     double apply(float* first, std::size_t stride) const;
 
