@@ -161,7 +161,7 @@ OptionValue whole_number(std::uint64_t least, std::uint64_t most,
         std::move(put), [=] { return fmt::format("a whole number from {} to {}", least, most); });
 }
 
-OptionValue one_of(std::vector<std::string> names, std::function<void(std::size_t)> put) {
+OptionValue one_of(const std::vector<std::string>& names, std::function<void(std::size_t)> put) {
     return make_value(
         [names](const std::string& text) {
             const auto found = std::ranges::find(names, text);

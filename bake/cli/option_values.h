@@ -45,7 +45,7 @@ OptionValue real_number(double least, double most, Put put);
 OptionValue number_above(double bound, double most, Put put);
 OptionValue whole_number(std::uint64_t least, std::uint64_t most,
                          std::function<void(std::uint64_t)> put);
-OptionValue one_of(std::vector<std::string> names, std::function<void(std::size_t)> put);
+OptionValue one_of(const std::vector<std::string>& names, std::function<void(std::size_t)> put);
 
 template <class T>
 struct Plain {

@@ -138,7 +138,7 @@ Ends find_ends(const Scene& scene) {
             const glm::vec3 x = p.position[v];
             for (glm::length_t axis = 0; axis < 3; ++axis) {
                 for (const bool back : {false, true}) {
-                    const auto end = static_cast<std::size_t>(2 * axis + (back ? 1 : 0));
+                    const auto end = 2 * static_cast<std::size_t>(axis) + (back ? 1 : 0);
                     const float along = back ? -x[axis] : x[axis];
                     if (along > farthest[end]) {
                         farthest[end] = along;

@@ -38,12 +38,12 @@ Parse word(void (*apply)(ViewState& state, const std::string& word)) {
 }
 
 // Of nothing else.
-Parse alone(What what) {
+Parse alone(const What& what) {
     return [=](Words words) { return words.empty() ? std::optional(what) : std::nullopt; };
 }
 
 // The word `special`, or as `otherwise` has it.
-Parse either(const char* special, void (*apply)(ViewState& state), Parse otherwise) {
+Parse either(const char* special, void (*apply)(ViewState& state), const Parse& otherwise) {
     return [=](Words words) -> std::optional<What> {
         if (words.size() == 1 && words[0] == special) return StateChange(apply);
         return otherwise(words);
