@@ -112,8 +112,8 @@ OptionValue one_of(T& to,
         placeholder += (placeholder.empty() ? "" : "|") + names.back();
         if (value == to) otherwise = " [" + names.back() + "]";
     }
-    OptionValue value = detail::one_of(
-        std::move(names), [&to, values = std::move(values)](std::size_t i) { to = values[i]; });
+    OptionValue value =
+        detail::one_of(names, [&to, values = std::move(values)](std::size_t i) { to = values[i]; });
     value.placeholder = placeholder + otherwise;
     return value;
 }

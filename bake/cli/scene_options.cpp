@@ -97,7 +97,7 @@ OptionValue knob_value(const bake::KnobSpec& knob, bake::BakeOptions& options) {
     for (const double value : knob.allowed) {
         names.push_back(fmt::format("{}", value));
     }
-    return detail::one_of(std::move(names), [&knob, put](std::size_t i) {
+    return detail::one_of(names, [&knob, put](std::size_t i) {
         put(knob.words.empty() ? knob.allowed[i] : static_cast<double>(i));
     });
 }
