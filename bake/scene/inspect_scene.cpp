@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <utility>
@@ -196,13 +198,17 @@ PartShape inspect_part(const Scene& scene, std::span<const std::uint32_t> primit
 
 // Copies of a mesh are inspected once.
 PartShape inspect_parts(const Scene& scene, std::uint32_t material) {
-    std::vector<std::pair<const Primitive*, PartShape>> known;
+    // Of each primitive of a mesh.
+    std::map<std::pair<std::uint32_t, std::uint32_t>,
+             std::vector<std::pair<const Primitive*, PartShape>>>
+        known_of;
     PartShape all;
     for (const std::vector<std::uint32_t>& part : list_parts_apart(scene, material)) {
         const Primitive& first = scene.primitives[part.front()];
         std::optional<PartShape> own;
+        auto& known = known_of[{first.mesh, first.primitive}];
         for (const auto& [of, shape] : known) {
-            if (own || of->mesh != first.mesh || of->primitive != first.primitive) continue;
+            if (own) break;
             if (const auto scale = part.size() == 1 ? scale_of_copy(first, *of) : std::nullopt) {
                 own = shape;
                 own->hole_area *= *scale * *scale;

@@ -49,15 +49,23 @@ std::vector<std::vector<std::uint32_t>> list_parts_apart(const formats::Scene& s
             box.push_back(box_of(scene.primitives[p]));
         }
     }
-    // A sweep along x: only boxes that reach as far as the next one begins can meet it.
+    // A sweep along the longest axis: only boxes that reach as far as the next one begins meet it.
+    PartBox all;
+    for (const PartBox& b : box) {
+        all.low = glm::min(all.low, b.low);
+        all.high = glm::max(all.high, b.high);
+    }
+    const glm::vec3 size = all.high - all.low;
+    const glm::length_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     std::vector<std::uint32_t> order(own.size()), open;
     for (std::uint32_t i = 0; i < order.size(); ++i) {
         order[i] = i;
     }
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return box[i].low.x; });
+    std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return box[i].low[axis]; });
     formats::DisjointSets sets(own.size());
     for (const std::uint32_t i : order) {
-        std::erase_if(open, [&](std::uint32_t other) { return box[other].high.x < box[i].low.x; });
+        std::erase_if(
+            open, [&](std::uint32_t other) { return box[other].high[axis] < box[i].low[axis]; });
         for (const std::uint32_t other : open) {
             if (box[i].meets(box[other])) sets.join(i, other);
         }
