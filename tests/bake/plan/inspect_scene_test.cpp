@@ -135,13 +135,16 @@ TEST(PartsApart, ACopyIsKnownByItsDistances) {
 }
 
 // Along each axis: which boxes meet does not depend on the one that is swept.
-TEST(PartsApart, ATowerOfTwoThatTouchAndOneApartHasTwoParts) {
+TEST(PartsApart, ATowerOfTwoThatTouchOneAboveAndOneBesideHasThreeParts) {
     for (const glm::vec3 up : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, 0, 1)}) {
+        const glm::vec3 beside(up.z, up.x, up.y);
         const auto scene = tests::make_translucent_scene(
-            {make_sphere(1, 1, 9.0f * up), make_sphere(1), make_sphere(1, 1, 1.9f * up)},
+            {make_sphere(1, 1, 9.0f * up), make_sphere(1), make_sphere(1, 1, 1.9f * up),
+             make_sphere(1, 1, 2.5f * beside)},
             tests::make_grey_medium(40, 1));
         EXPECT_THAT(list_parts_apart(scene, 0),
-                    testing::ElementsAre(testing::ElementsAre(0u), testing::ElementsAre(1u, 2u)));
+                    testing::ElementsAre(testing::ElementsAre(0u), testing::ElementsAre(1u, 2u),
+                                         testing::ElementsAre(3u)));
     }
 }
 
