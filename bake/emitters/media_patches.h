@@ -79,11 +79,6 @@ struct MediumPatches {
     std::size_t size() const { return probes.size(); }
 };
 
-/// Cuts points into `most` patches, or as many as there are points: each time in halves along the
-/// axis, of place or of normal, in which they differ most. The patch of each point. The two faces
-/// of a thin wall are apart.
-std::vector<std::uint32_t> cut_into_patches(std::span<const BodyPoint> points, std::size_t most);
-
 /// One answer of a medium, at coarse settings, to light in a basis of patches. Empty where the
 /// medium has no rows.
 MediumPatches find_patches(const LitMedia& media, const LampLight& light, const LitMedium& medium,

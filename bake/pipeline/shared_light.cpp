@@ -11,20 +11,32 @@ namespace {
 
 using PointRows = std::vector<std::vector<float>>;
 
-// Calls make() while only the effects that let light cross a medium act, or only all others.
-template <class Make>
-PointRows with_some(const EffectTable& effects, SubjectState& subject, bool crosses, Make&& make) {
+// Calls make() while only those effects of a subject act that `counts` holds for.
+template <class Counts, class Make>
+PointRows with_some(const EffectTable& effects, SubjectState& subject, Counts&& counts,
+                    Make&& make) {
     std::vector<std::uint8_t> acted;
     for (std::size_t e = 0; e < subject.effects.size(); ++e) {
         acted.push_back(subject.effects[e].acts ? 1 : 0);
-        const bool lets_cross = effects.effects[e].make_look_through != nullptr;
-        subject.effects[e].acts = subject.effects[e].acts && lets_cross == crosses;
+        subject.effects[e].acts =
+            subject.effects[e].acts && counts(effects.effects[e], subject.layout);
     }
     PointRows rows = make();
     for (std::size_t e = 0; e < subject.effects.size(); ++e) {
         subject.effects[e].acts = acted[e] != 0;
     }
     return rows;
+}
+
+bool lets_cross(const EffectDescriptor& effect, const RowLayout&) {
+    return effect.make_look_through != nullptr;
+}
+
+// Of light that is no environment's; where light leaves at its entry, others than the effect that
+// adds it scale its row.
+bool scatters(const EffectDescriptor& effect, const RowLayout& layout) {
+    return !lets_cross(effect, layout) &&
+           (effect.adds_other_light || (layout.at_entry && effect.add_at_entry != nullptr));
 }
 
 // Of the effect that lets light cross a subject's medium; empty where none acts.
@@ -67,15 +79,30 @@ std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knob
         if (effect.make_light == nullptr || std::ranges::count(acts, 1) == 0) continue;
         const std::string name(effect.name);
         auto light = run_stage(log, name, name + ": scatterers", [&](std::uint64_t& rays) {
-            const auto rows_of_medium =
-                [&](std::uint32_t material, bool crosses, std::span<const Receiver> outside,
+            const auto subject_of = [&](std::uint32_t material) -> SubjectState& {
+                return *std::ranges::find(subjects, material, &SubjectState::material);
+            };
+            const auto crossing_rows =
+                [&](std::uint32_t material, std::span<const Receiver> outside,
                     std::span<const BodyPoint> inside, std::uint32_t cubemap_size) {
-                    const auto own = std::ranges::find(subjects, material, &SubjectState::material);
-                    return with_some(bake.effects, *own, crosses, [&] {
+                    SubjectState& own = subject_of(material);
+                    return with_some(bake.effects, own, lets_cross, [&] {
                         return rows_of_points(bake, coarse_knobs(bake.effects, knobs, cubemap_size),
-                                              context, *own, outside, inside, rays);
+                                              context, own, outside, inside, rays);
                     });
                 };
+            const auto answer_of_medium = [&](std::uint32_t material, const OtherLight& columns,
+                                              std::span<const Receiver> outside,
+                                              std::span<const BodyPoint> inside,
+                                              std::uint32_t cubemap_size) {
+                BakeInputs lit = bake;
+                lit.light = &columns;
+                SubjectState& own = subject_of(material);
+                return with_some(bake.effects, own, scatters, [&] {
+                    return rows_of_points(lit, coarse_knobs(bake.effects, knobs, cubemap_size),
+                                          context, own, outside, inside, rays);
+                });
+            };
             const auto look_through = [&](std::uint32_t material) {
                 const auto own = std::ranges::find(subjects, material, &SubjectState::material);
                 return own == subjects.end()
@@ -84,8 +111,9 @@ std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knob
                                        coarse_knobs(bake.effects, knobs, knobs.cubemap_size),
                                        context);
             };
-            return effect.make_light(
-                {bake, knobs, context, layouts, acts, rows_of_medium, look_through}, rays);
+            return effect.make_light({bake, knobs, context, layouts, acts, crossing_rows,
+                                      answer_of_medium, look_through},
+                                     rays);
         });
         if (light) return light;
     }

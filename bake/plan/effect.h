@@ -141,12 +141,17 @@ struct LightInputs {
     std::span<const RowLayout> layouts;  ///< by material
     std::vector<std::uint8_t> acts;      ///< by material: whether the effect does
     /// Rows of points of one medium, coarsely: T_k, terms * bands * 6 n n Haar coefficients each,
-    /// n = `cubemap_size`. `crosses`: of light that crosses the medium straight from beyond, alone;
-    /// false: of all other.
+    /// n = `cubemap_size`, of light of the environment that crosses it straight from beyond.
     std::function<std::vector<std::vector<float>>(
-        std::uint32_t material, bool crosses, std::span<const Receiver> outside,
+        std::uint32_t material, std::span<const Receiver> outside,
         std::span<const BodyPoint> inside, std::uint32_t cubemap_size)>
-        rows_of_medium{};
+        crossing_rows{};
+    /// The same of what the medium scatters of `light`, which is without the environment. Empty
+    /// where no effect turns such light into rows.
+    std::function<std::vector<std::vector<float>>(
+        std::uint32_t material, const OtherLight& light, std::span<const Receiver> outside,
+        std::span<const BodyPoint> inside, std::uint32_t cubemap_size)>
+        answer_of_medium{};
     /// Empty where no light crosses the medium straight.
     std::function<LookThrough(std::uint32_t material)> look_through{};
 };

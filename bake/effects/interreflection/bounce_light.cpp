@@ -13,6 +13,7 @@
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/effects/interreflection/scatterers.h"
 #include "bake/effects/interreflection/site_light.h"
+#include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {
@@ -26,7 +27,7 @@ constexpr double kLeastShare = 1e-3;
 struct Field {
     const LightInputs& inputs;
     std::span<const Scatterer> scatterers;
-    const ScattererLight& light;
+    ScattererLight& light;
 
     bool passes_light(std::size_t i) const {
         return inputs.bake.scene.materials[scatterers[i].material].sheet.has_value();
@@ -47,12 +48,41 @@ struct Arrivals {
     BandColour of_through{};  // times `through`, by band
 };
 
+// Whether nothing of light in a body is absorbed, band by band.
+std::array<bool, 3> absorbs_nothing(const formats::Medium& medium) {
+    return {medium.sigma_a.r == 0, medium.sigma_a.g == 0, medium.sigma_a.b == 0};
+}
+
+// What crosses a medium straight may not be more than what enters and does not scatter: `scattered`
+// is exitance by irradiance 1 everywhere. Without absorption it is all of that, and the factor
+// makes up for the two's quadratures.
+BandColour share_of_crossing(const formats::Medium& medium, const BandColour& scattered,
+                             const std::array<double, 3>& all) {
+    constexpr double kMost = 2;
+    const double enters = 1 - fresnel_moments(double{medium.eta}).external;
+    const std::array<bool, 3> keeps_all = absorbs_nothing(medium);
+    BandColour share{};
+    for (std::size_t b = 0; b < share.size(); ++b) {
+        const double left = std::max(0.0, enters - double{scattered[b]});
+        const double fits = all[b] > 0 ? left / all[b] : 0;
+        share[b] = static_cast<float>(std::min(fits, keeps_all[b] ? kMost : 1.0));
+    }
+    return share;
+}
+
+// `scattered`: MediumAnswer::sum_of the scatterer's patch.
 void weigh_through(const Field& field, const BounceTree& tree, const LookThrough& look,
-                   std::size_t i, Arrivals& arrivals, std::uint64_t& rays) {
+                   std::size_t i, const BandColour& scattered, Arrivals& arrivals,
+                   std::uint64_t& rays) {
     const Scatterer& s = field.scatterers[i];
     const CrossingViews crossing = look(s.inside, rays);
     double sum = 0;
-    std::array<double, 3> by_band{};
+    std::array<double, 3> by_band{}, all{};
+    for (const SurfaceView& view : crossing.views) {
+        for (std::size_t b = 0; b < all.size(); ++b) {
+            all[b] += double{view.weight[b]};
+        }
+    }
     for (const SeenNode& seen : find_seen(field.inputs.bake.scene, field.inputs.bake.rays, tree,
                                           crossing.views, crossing.solid_angle, rays)) {
         std::array<float, 3> weight = crossing.views[seen.view].weight;
@@ -70,15 +100,25 @@ void weigh_through(const Field& field, const BounceTree& tree, const LookThrough
             by_band[b] += double{weight[b]};
         }
     }
+    const formats::Medium& medium = *field.inputs.bake.scene.materials[s.material].medium;
+    const BandColour share = share_of_crossing(medium, scattered, all);
     const std::array<float, 3> albedo{s.albedo.diffuse.r, s.albedo.diffuse.g, s.albedo.diffuse.b};
-    for (std::size_t b = 0; b < by_band.size() && sum > 0; ++b) {
-        arrivals.of_through[b] = albedo[b] * static_cast<float>(by_band[b] / sum);
+    BandColour of_sky{};
+    for (std::size_t b = 0; b < by_band.size(); ++b) {
+        arrivals.of_through[b] =
+            sum > 0 ? albedo[b] * share[b] * static_cast<float>(by_band[b] / sum) : 0;
+        of_sky[b] = albedo[b] * share[b];
     }
     if (field.light.bands == 1) {
-        arrivals.of_through = {formats::luminance({arrivals.of_through[0], arrivals.of_through[1],
-                                                   arrivals.of_through[2]}),
-                               0, 0};
+        const auto grey = [](const BandColour& c) {
+            return BandColour{formats::luminance({c[0], c[1], c[2]})};
+        };
+        arrivals.of_through = grey(arrivals.of_through);
+        of_sky = grey(of_sky);
     }
+    std::vector<float> to = field.light.emitted.row(i);
+    add_scaled(field.light.crossing.row(i), of_sky, to);
+    field.light.emitted.set(i, to);
 }
 
 // By material.
@@ -95,6 +135,12 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
     std::vector<Arrivals> arrivals(field.scatterers.size());
     const BounceGrid grid = make_bounce_grid(kRaysOfScatterer);
     const std::vector<LookThrough> looks = looks_through(field.inputs);
+    std::vector<BandColour> scattered(looks.empty() ? 0 : arrivals.size());
+    for (const MediumAnswer& answer : field.light.answers) {
+        for (std::size_t m = 0; m < answer.members.size(); ++m) {
+            scattered[answer.members[m]] = answer.sum_of(answer.patch[m]);
+        }
+    }
     constexpr std::size_t kBlock = 16;
     const auto weigh = [&](const Receiver& at, std::vector<NodeWeight>& weights) {
         return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
@@ -111,7 +157,7 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
                     traced += weigh(field.scatterers[i].beyond, arrivals[i].back);
                 }
                 if (const LookThrough& look = looks[field.scatterers[i].material]) {
-                    weigh_through(field, tree, look, i, arrivals[i], traced);
+                    weigh_through(field, tree, look, i, scattered[i], arrivals[i], traced);
                 }
             }
             return traced;
@@ -136,6 +182,10 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
                           BounceTree& tree) {
     const std::size_t size = field.light.row_size();
     CodedRows leaving = field.light.emitted;
+    CodedRows arriving = field.light.answers.empty() ? CodedRows() : leaving;  // of media
+    const auto is_medium = [&](std::size_t i) {
+        return field.inputs.layouts[field.scatterers[i].material].translucent;
+    };
     // What neighbours see is mostly the same and still in the cache.
     const std::vector<std::uint32_t> order = tree.neighbours();
     const double emitted = sum_of_even(leaving);
@@ -159,14 +209,24 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
                         add_node_rows(tree, from, row);
                         add_scaled(row, share, to);
                     };
-                    add(arrivals[i].front, field.light.reflect[i]);
-                    add(arrivals[i].back, field.light.transmit[i]);
+                    if (is_medium(i)) {
+                        std::ranges::fill(row, 0.0f);
+                        add_node_rows(tree, arrivals[i].front, row);
+                        arriving.set(i, row);
+                    } else {
+                        add(arrivals[i].front, field.light.reflect[i]);
+                        add(arrivals[i].back, field.light.transmit[i]);
+                    }
                     add(arrivals[i].through, arrivals[i].of_through);
                     leaving.set(i, to);
                 }
                 return 0;
             },
             [](Range, int) {});
+        for (const MediumAnswer& answer : field.light.answers) {
+            add_answer(answer, field.scatterers, arriving, field.light.bands, field.inputs.context,
+                       leaving);
+        }
         const double sum = sum_of_even(leaving);
         last_bounce = sum - all;
         all = sum;
@@ -174,6 +234,20 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
     }
     tree.set_rows(leaving, field.inputs.context);
     return bounces;
+}
+
+// Light enters a medium where no receiver looks, too: points all over those that are seen.
+void add_spread(const LightInputs& inputs, std::vector<Scatterer>& scatterers) {
+    constexpr std::size_t kEvenPoints = 256;
+    std::vector<std::uint8_t> is_seen(inputs.layouts.size());
+    for (const Scatterer& s : scatterers) {
+        is_seen[s.material] = inputs.layouts[s.material].translucent ? 1 : 0;
+    }
+    for (std::uint32_t m = 0; m < is_seen.size(); ++m) {
+        if (is_seen[m] == 0) continue;
+        const std::vector<Scatterer> spread = spread_over_material(inputs, m, kEvenPoints);
+        scatterers.insert(scatterers.end(), spread.begin(), spread.end());
+    }
 }
 
 }  // namespace
@@ -196,7 +270,8 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
         find_scatterers(inputs, count_scatterers(inputs.knobs), rays);
     if (scatterers.empty()) return nullptr;
     const bool is_coloured = std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
-    const ScattererLight own = light_scatterers(inputs, scatterers, is_coloured ? 3 : 1, rays);
+    add_spread(inputs, scatterers);
+    ScattererLight own = light_scatterers(inputs, scatterers, is_coloured ? 3 : 1, rays);
     const Field field{inputs, scatterers, own};
     auto light = std::make_shared<BounceLight>(
         BounceLight{.scene = inputs.bake.scene,

@@ -77,6 +77,8 @@ class BounceTree {
     float solid_angle_of_sky(std::uint32_t node) const;
     /// Of each scatterer, the area of its part of the surface [m^2].
     std::vector<float> cells() const;
+    /// Of a node that find() returns for a footprint of 0.
+    std::uint32_t scatterer_of(std::uint32_t node) const { return extents_[node].scatterer; }
     /// All scatterers, such that neighbours in space are mostly neighbours in the list.
     std::vector<std::uint32_t> neighbours() const;
     /// Of a scatterer's node, of its openness; of others between those of the ends.

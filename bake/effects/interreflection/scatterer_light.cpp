@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/effects/interreflection/even_return.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
@@ -60,15 +59,6 @@ void add_scaled(std::span<const float> from, const BandColour& factor, std::uint
     }
 }
 
-// Sum of the six face averages.
-float even_light(std::span<const float> plane) {
-    float sum = 0;
-    for (std::size_t f = 0; f < plane.size(); f += plane.size() / 6) {
-        sum += plane[f];
-    }
-    return sum;
-}
-
 // Of E.
 float openness_of(const LitScatterers& field, std::span<const float> row) {
     return std::clamp(static_cast<float>(relit(row, field.even_sky)) / std::numbers::pi_v<float>,
@@ -97,84 +87,94 @@ std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions
     return rays;
 }
 
-// What leaves a medium at a point without what its boundary mirrors, under a base colour: c sum of
-// g_k T_k.
+// What leaves a medium at a point without what its boundary mirrors: sum of g_k T_k.
 void add_leaving(const RowLayout& layout, std::span<const float> weight,
-                 std::span<const float> rows, const BandColour& colour, std::uint32_t bands,
-                 std::span<float> to) {
+                 std::span<const float> rows, std::uint32_t bands, std::span<float> to) {
     const std::uint32_t own_bands = layout.bands();
     for (std::size_t k = 0; k < weight.size(); ++k) {
         for (std::uint32_t b = 0; b < bands; ++b) {
             const std::size_t from = k * own_bands + std::min(b, own_bands - 1);
             for (std::size_t t = 0; t < kRowTexels; ++t) {
-                to[b * kRowTexels + t] += colour[b] * weight[k] * rows[from * kRowTexels + t];
+                to[b * kRowTexels + t] += weight[k] * rows[from * kRowTexels + t];
             }
         }
     }
 }
 
-// B of points of one medium, from the rows that its effects give, without what the boundary mirrors
-// (bounce_rays.h); and what they make of bounced light.
+// Light of the environment at points of one medium; what crosses it straight to them.
 std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
-                           std::uint32_t material, std::span<const std::size_t> members) {
-    constexpr std::size_t kEvenPoints = 256;
-    const std::vector<Scatterer> spread = spread_over_material(field.inputs, material, kEvenPoints);
-    std::vector<Receiver> outside;
-    std::vector<BodyPoint> inside;
-    const auto ask_for = [&](const Scatterer& s) {
-        outside.push_back(s.outside);
-        inside.push_back(s.inside);
-    };
-    for (const std::size_t i : members) {
-        ask_for(field.scatterers[i]);
-    }
-    std::ranges::for_each(spread, ask_for);
-    const std::vector<std::vector<float>> rows =
-        field.inputs.rows_of_medium(material, false, outside, inside, kCubemap);
-    std::vector<std::vector<float>> crossing;
-    if (field.inputs.look_through && field.inputs.look_through(material)) {
-        crossing =
-            field.inputs.rows_of_medium(material, true, std::span(outside).first(members.size()),
-                                        std::span(inside).first(members.size()), kCubemap);
-    }
-    if (field.inputs.context.cancelled()) return 0;
-    const RowLayout& layout = field.inputs.layouts[material];
-    const formats::Medium& medium = *field.inputs.bake.scene.materials[material].medium;
-    const float eta = medium.eta;
+                           const MediumAnswer& answer, CodedRows& irradiance) {
+    const std::span<const std::uint32_t> members = answer.members;
+    const std::uint32_t material = field.scatterers[members.front()].material;
     const std::uint32_t bands = field.light.bands;
     std::uint64_t rays = 0;
-    std::vector<float> around(kRowTexels), leaving(field.light.row_size());
-    const auto find_leaving = [&](std::size_t m, const BandColour& colour) {
-        std::ranges::fill(around, 0.0f);
-        std::ranges::fill(leaving, 0.0f);
-        rays += gather_row(field, directions, outside[m], around);
-        add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), rows[m], colour,
-                    bands, leaving);
-    };
-    EvenReturn even(medium);
-    for (std::size_t m = members.size(); m < rows.size(); ++m) {
-        find_leaving(m, {1, 1, 1});
-        BandColour sum{};
-        for (std::uint32_t b = 0; b < bands; ++b) {
-            sum[b] = even_light(std::span(leaving).subspan(b * kRowTexels, kRowTexels));
-        }
-        even.add(spread[m - members.size()].position, even_light(around), sum);
+    for_each_block_in_order(
+        members.size(), 16, field.inputs.context,
+        [&](Range range) {
+            std::uint64_t traced = 0;
+            std::vector<float> row(kRowTexels), planes;
+            for (std::size_t m = range.begin; m < range.end; ++m) {
+                Scatterer& s = field.scatterers[members[m]];
+                std::ranges::fill(row, 0.0f);
+                traced += gather_row(field, directions, s.outside, row);
+                s.openness = openness_of(field, row);
+                planes.clear();
+                for (std::uint32_t b = 0; b < bands; ++b) {
+                    planes.insert(planes.end(), row.begin(), row.end());
+                }
+                irradiance.set(members[m], planes);
+            }
+            return traced;
+        },
+        [&](Range, std::uint64_t traced) { rays += traced; });
+    if (!field.inputs.look_through || !field.inputs.look_through(material)) return rays;
+    std::vector<Receiver> outside;
+    std::vector<BodyPoint> inside;
+    for (const std::uint32_t i : members) {
+        outside.push_back(field.scatterers[i].outside);
+        inside.push_back(field.scatterers[i].inside);
     }
-    for (std::size_t m = 0; m < members.size(); ++m) {
-        const std::size_t i = members[m];
-        Scatterer& s = field.scatterers[i];
-        const BandColour colour = to_bands(s.albedo.diffuse, bands);
-        find_leaving(m, colour);
-        if (!crossing.empty()) {
-            add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), crossing[m],
-                        colour, bands, leaving);
+    const std::vector<std::vector<float>> rows =
+        field.inputs.crossing_rows(material, outside, inside, kCubemap);
+    if (field.inputs.context.cancelled()) return rays;
+    field.light.crossing.resize(field.scatterers.size());
+    const RowLayout& layout = field.inputs.layouts[material];
+    const float eta = field.inputs.bake.scene.materials[material].medium->eta;
+    std::vector<float> leaving(field.light.row_size());
+    for (std::size_t m = 0; m < rows.size(); ++m) {
+        std::ranges::fill(leaving, 0.0f);
+        add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), rows[m], bands,
+                    leaving);
+        field.light.crossing.set(members[m], leaving);
+    }
+    return rays;
+}
+
+// B of media, from what they make of light on each patch; without what boundaries mirror
+// (bounce_rays.h).
+std::uint64_t light_media(LitScatterers& field, const DirectionSet& directions) {
+    std::vector<std::vector<std::uint32_t>> members(field.inputs.layouts.size());
+    bool is_any = false;
+    for (std::uint32_t i = 0; i < field.scatterers.size(); ++i) {
+        const std::uint32_t material = field.scatterers[i].material;
+        if (field.inputs.layouts[material].translucent) {
+            members[material].push_back(i);
+            is_any = true;
         }
-        s.openness = openness_of(field, around);
-        const BandColour share = even.share(s.position);
-        for (std::uint32_t b = 0; b < bands; ++b) {
-            field.light.reflect[i][b] = std::clamp(colour[b] * share[b], 0.0f, 1.0f);
-        }
-        field.light.emitted.set(i, leaving);
+    }
+    if (!is_any) return 0;
+    const BounceTree tree(field.scatterers, field.inputs.layouts.size(), 0);
+    const std::vector<float> cells = tree.cells();
+    CodedRows irradiance(field.scatterers.size(), field.light.row_size());
+    std::uint64_t rays = 0;
+    for (std::vector<std::uint32_t>& own : members) {
+        if (own.empty() || field.inputs.context.cancelled()) continue;
+        field.light.answers.push_back(
+            find_answer(field.inputs, field.scatterers, tree, cells, std::move(own)));
+        const MediumAnswer& answer = field.light.answers.back();
+        rays += light_medium(field, directions, answer, irradiance);
+        add_answer(answer, field.scatterers, irradiance, field.light.bands, field.inputs.context,
+                   field.light.emitted);
     }
     return rays;
 }
@@ -196,17 +196,7 @@ std::uint64_t light_all(LitScatterers& field) {
             return traced;
         },
         [&](Range, std::uint64_t traced) { rays += traced; });
-    for (std::uint32_t m = 0; m < field.inputs.layouts.size(); ++m) {
-        std::vector<std::size_t> members;
-        for (std::size_t i = 0; i < field.scatterers.size(); ++i) {
-            if (field.scatterers[i].material == m && is_inside(i)) {
-                members.push_back(i);
-            }
-        }
-        if (!members.empty() && !field.inputs.context.cancelled()) {
-            rays += light_medium(field, directions, m, members);
-        }
-    }
+    rays += light_media(field, directions);
     return rays;
 }
 
@@ -218,8 +208,12 @@ ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> 
     LitScatterers field{inputs,
                         scatterers,
                         make_even_sky(),
-                        {bands, CodedRows(count, bands * kRowTexels),
-                         std::vector<BandColour>(count), std::vector<BandColour>(count)}};
+                        {bands,
+                         CodedRows(count, bands * kRowTexels),
+                         std::vector<BandColour>(count),
+                         std::vector<BandColour>(count),
+                         {},
+                         CodedRows(0, bands * kRowTexels)}};
     rays += light_all(field);
     return std::move(field.light);
 }

@@ -1,25 +1,26 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "bake/effects/interreflection/bounce_tree.h"
+#include "bake/effects/interreflection/medium_answer.h"
 #include "bake/effects/interreflection/scatterers.h"
 #include "bake/plan/effect.h"
 #include "bake/transport/coded_rows.h"
 
 namespace opaline::bake {
 
-/// By band; of one band the first.
-using BandColour = std::array<float, 3>;
-
 /// What scatterers make of the environment's light and of each other's.
 struct ScattererLight {
     std::uint32_t bands = 3;                    ///< or 1
     CodedRows emitted;                          ///< B without bounces, band by band, Haar
     std::vector<BandColour> reflect, transmit;  ///< of bounced light, on its side and through it
+    std::vector<MediumAnswer> answers;          ///< of media, which reflect as these say
+    /// B of light of the sky that crosses a medium straight, but for the base colour; of scatterers
+    /// on media that let some cross, else 0. No part of `emitted`.
+    CodedRows crossing;
 
     std::size_t row_size() const { return emitted.size(); }
 };
