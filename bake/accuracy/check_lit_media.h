@@ -4,7 +4,7 @@
 #include <span>
 
 #include "bake/base/context.h"
-#include "bake/emitters/lamps.h"
+#include "bake/lamps/lamps.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"

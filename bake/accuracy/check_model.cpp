@@ -12,7 +12,7 @@
 #include "bake/accuracy/check_suns.h"
 #include "bake/accuracy/model_pairs.h"
 #include "bake/scene/orient_bodies.h"
-#include "bake/volumes/scaled_phase.h"
+#include "bake/transport/density/scaled_phase.h"
 #include "runtime/light_vector.h"
 #include "runtime/specular.h"
 

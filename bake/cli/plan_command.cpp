@@ -21,6 +21,7 @@
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/volumes/plan_volumes.h"
+#include "bake/volumes/volume_effects.h"
 
 namespace opaline::cli {
 namespace {
@@ -62,7 +63,8 @@ int run(const PlanCommand& options) {
     std::ranges::copy(bake::plan_layers(scene, knobs).entries, std::back_inserter(volumes));
     const bake::EmitterPlan emitters = bake::plan_emitters(scene, knobs);
     require(bake::check_lamps(
-        scene, bake::count_emitters(emitters.lamps, bake::count_glowing(planned.layouts))));
+        scene, bake::count_emitters(emitters.lamps, bake::count_glowing(planned.layouts)),
+        bake::kEmitters));
     std::ranges::copy(emitters.entries, std::back_inserter(volumes));
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
     if (evened) {

@@ -10,8 +10,8 @@
 
 #include "bake/emitters/emitter_knobs.h"
 #include "bake/emitters/light_media.h"
-#include "bake/emitters/receiver_light.h"
-#include "bake/emitters/trace_particles.h"
+#include "bake/lamps/receiver_light.h"
+#include "bake/lamps/trace_particles.h"
 #include "bake/scene/lobe_record.h"
 
 namespace opaline::bake {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bake/emitters/media_patches.h"
-#include "bake/emitters/trace_particles.h"
+#include "bake/lamps/trace_particles.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/packet_lane.h"
 #include "formats/opal/cubemap.h"

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/emitters/lamp_sources.h"
-#include "bake/emitters/media_light.h"
 #include "bake/emitters/media_patches.h"
-#include "bake/emitters/receiver_light.h"
+#include "bake/lamps/lamp_sources.h"
+#include "bake/lamps/media_light.h"
+#include "bake/lamps/receiver_light.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/emitters/receiver_light.h"
+#include "bake/lamps/receiver_light.h"
 #include "bake/plan/row_layout.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/other_light.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "bake/emitters/emitter_knobs.h"
-#include "bake/emitters/point_box.h"
+#include "bake/lamps/point_box.h"
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/largest_light.h"
 #include "bake/volumes/plan_volumes.h"

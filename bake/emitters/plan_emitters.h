@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "bake/emitters/lamps.h"
+#include "bake/lamps/lamps.h"
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/effect.h"
 #include "bake/plan/knobs.h"

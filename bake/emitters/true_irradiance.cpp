@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "bake/base/rng.h"
-#include "bake/emitters/onward_ray.h"
-#include "bake/emitters/spread_points.h"
+#include "bake/lamps/onward_ray.h"
+#include "bake/lamps/spread_points.h"
 #include "bake/scene/punctual_light.h"
 #include "bake/transport/packet_lane.h"
 #include "bake/volumes/walk_parts.h"

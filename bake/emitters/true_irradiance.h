@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "bake/emitters/lamp_sources.h"
-#include "bake/emitters/receiver_light.h"
+#include "bake/lamps/lamp_sources.h"
+#include "bake/lamps/receiver_light.h"
 #include "bake/receivers/receiver.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/transport/ray_scene.h"
-#include "bake/volumes/density_space.h"
 #include "bake/volumes/glow_walks.h"
 #include "formats/opal/asset.h"
 

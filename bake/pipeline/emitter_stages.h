@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/emitters/lamps.h"
+#include "bake/lamps/lamps.h"
 #include "bake/pipeline/costed_bake.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/plan/bake_inputs.h"

@@ -29,6 +29,7 @@
 #include "bake/transport/bake_openness.h"
 #include "bake/transport/hidden_receivers.h"
 #include "bake/transport/touching_triangles.h"
+#include "bake/volumes/volume_effects.h"
 
 namespace opaline::bake {
 namespace {
@@ -283,7 +284,8 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         result.facts = inspect_scene(scene);
         return plan_bake(effects, scene, result.facts, wanted);
     });
-    if (auto status = check_lamps(scene, count_emitters(emitters.lamps, glowing)); !status) {
+    if (auto status = check_lamps(scene, count_emitters(emitters.lamps, glowing), kEmitters);
+        !status) {
         return std::move(status).error();
     }
     if (extras.on_planned) {

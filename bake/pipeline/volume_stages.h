@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bake/accuracy/volumes/volume_error.h"
-#include "bake/emitters/lamps.h"
+#include "bake/lamps/lamps.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/plan/knobs.h"
 #include "bake/receivers/receiver.h"

@@ -154,6 +154,7 @@ struct LightInputs {
         answer_of_medium{};
     /// Empty where no light crosses the medium straight.
     std::function<LookThrough(std::uint32_t material)> look_through{};
+    std::uint32_t rays_of_receiver = 0;  ///< to other surfaces, as the effect asks for
 };
 
 /// The interface of an effect. Plan, cost model, pilot, self-check, sweep, report and command line

@@ -1,7 +1,7 @@
 #include "bake/volumes/add_scattered.h"
 
 #include "bake/base/vector8.h"
-#include "bake/volumes/attenuation.h"
+#include "bake/transport/density/attenuation.h"
 
 namespace opaline::bake {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "bake/volumes/attenuation.h"
-#include "bake/volumes/scaled_phase.h"
+#include "bake/transport/density/attenuation.h"
+#include "bake/transport/density/scaled_phase.h"
 
 namespace opaline::bake {
 

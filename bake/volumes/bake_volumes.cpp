@@ -11,8 +11,8 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/share_details.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/volumes/bake_glow.h"
-#include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/phase_table.h"

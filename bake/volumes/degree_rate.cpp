@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "bake/volumes/scaled_phase.h"
+#include "bake/transport/density/scaled_phase.h"
 
 namespace opaline::bake {
 

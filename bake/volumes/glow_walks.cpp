@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/volumes/grid_loops.h"
+#include "bake/transport/density/grid_loops.h"
 #include "bake/volumes/walk_parts.h"
 #include "formats/opal/spherical_harmonics.h"
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/transport/density/density_space.h"
 #include "bake/transport/ray_scene.h"
-#include "bake/volumes/density_space.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "bake/volumes/grid_loops.h"
+#include "bake/transport/density/grid_loops.h"
 
 namespace opaline::bake {
 namespace {

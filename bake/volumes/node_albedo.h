@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "bake/volumes/density_space.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/volumes/node_lattice.h"
 
 namespace opaline::bake {

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "bake/volumes/grid_loops.h"
+#include "bake/transport/density/grid_loops.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/volumes.h"
 

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "bake/base/largest.h"
-#include "bake/volumes/attenuation.h"
+#include "bake/transport/density/attenuation.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/volumes/attenuation.h"
+#include "bake/transport/density/attenuation.h"
 #include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"

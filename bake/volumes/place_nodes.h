@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/transport/density/attenuation.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/transport/ray_scene.h"
-#include "bake/volumes/attenuation.h"
-#include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/plan_volumes.h"

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "bake/plan/plan_input.h"
+#include "bake/transport/density/density_space.h"
+#include "bake/transport/density/scaled_phase.h"
 #include "bake/volumes/choose_method.h"
-#include "bake/volumes/density_space.h"
 #include "bake/volumes/largest_light.h"
 #include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
-#include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 

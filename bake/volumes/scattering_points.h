@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "bake/volumes/density_space.h"
+#include "bake/transport/density/density_space.h"
 
 namespace opaline::bake {
 

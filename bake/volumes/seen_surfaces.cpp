@@ -5,7 +5,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/plan/surface_albedo.h"
-#include "bake/volumes/attenuation.h"
+#include "bake/transport/density/attenuation.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/volumes/attenuation.h"
+#include "bake/transport/density/attenuation.h"
 #include "bake/volumes/walk_parts.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/volumes.h"

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <utility>
 
+#include "bake/transport/density/scaled_phase.h"
 #include "bake/volumes/node_lattice.h"
-#include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
 
 namespace opaline::bake {

@@ -10,7 +10,7 @@
 #include "bake/path_integral/grid_medium.h"
 #include "bake/path_integral/volume_box.h"
 #include "bake/plan/knobs.h"
-#include "bake/volumes/density_space.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/volumes/volume_walks.h"
 
 namespace opaline::bake {

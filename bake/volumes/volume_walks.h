@@ -4,9 +4,9 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "bake/transport/density/attenuation.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/transport/ray_scene.h"
-#include "bake/volumes/attenuation.h"
-#include "bake/volumes/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/seen_surfaces.h"
 

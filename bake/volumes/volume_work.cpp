@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bake/path_integral/path_estimate.h"
-#include "bake/volumes/density_space.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/place_nodes.h"
 #include "bake/volumes/sent_light.h"

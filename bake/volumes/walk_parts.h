@@ -7,9 +7,9 @@
 #include <limits>
 
 #include "bake/base/rng.h"
+#include "bake/transport/density/density_space.h"
+#include "bake/transport/density/scaled_phase.h"
 #include "bake/transport/ray_scene.h"
-#include "bake/volumes/density_space.h"
-#include "bake/volumes/scaled_phase.h"
 
 namespace opaline::bake {
 

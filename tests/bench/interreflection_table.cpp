@@ -19,12 +19,12 @@
 
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/effects.h"
-#include "bake/effects/interreflection/bounce_gather.h"
-#include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
-#include "bake/effects/interreflection/scatterers.h"
 #include "bake/environment/builtin_environment.h"
 #include "bake/example/example_scenes.h"
+#include "bake/exchange/bounce_gather.h"
+#include "bake/exchange/bounce_light.h"
+#include "bake/exchange/scatterers.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/inspect_scene.h"
@@ -216,8 +216,10 @@ void compare(const World& w, const World& fine, std::uint32_t n) {
     options.set(kBounceRays, n);
     options.effects = {"direct", "interreflection"};
     std::uint64_t rays = 0;
+    const Knobs knobs = resolve_knobs(options).value();
     const auto light = find_bounce_light(
-        {w.bake, resolve_knobs(options).value(), w.context, w.layouts, {}, {}}, rays);
+        {w.bake, knobs, w.context, w.layouts, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])},
+        rays);
     // Error, and of that what rays of other seeds share: errors of the look-up and of scatterers.
     constexpr std::uint64_t kSeeds = 8;
     const BounceGrid cut = make_cut_grid(n);

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/emitters/onward_ray.h"
-#include "bake/emitters/receiver_light.h"
-#include "bake/emitters/trace_particles.h"
+#include "bake/lamps/onward_ray.h"
+#include "bake/lamps/receiver_light.h"
+#include "bake/lamps/trace_particles.h"
 #include "formats/image/png.h"
 #include "formats/image/srgb.h"
-#include "tests/bake/emitters/lamp_scenes.h"
+#include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/bench/bench.h"
 
 namespace opaline::bake {

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "bake/effects/interreflection/bounce_gather.h"
-#include "bake/effects/interreflection/bounce_light.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
-#include "bake/effects/interreflection/scatterers.h"
-#include "bake/effects/interreflection/true_bounces.h"
+#include "bake/exchange/bounce_gather.h"
+#include "bake/exchange/bounce_light.h"
+#include "bake/exchange/scatterers.h"
+#include "bake/exchange/true_bounces.h"
 #include "bake/plan/effect.h"
 #include "formats/opal/cubemap.h"
 
@@ -26,6 +26,10 @@ constexpr double kBounces = 6;
 // Shares measured on the statue on its floor: receivers that trace rays of their own where there
 // are sites, sites that a receiver reads, and sites added where the first level is too sparse.
 constexpr double kOwnShare = 0.26, kSitesRead = 20, kAddedShare = 0.16;
+
+std::uint32_t rays_of_receiver(const Knobs& knobs) {
+    return count_bounce_rays(knobs[kBounceRays]);
+}
 
 double count_sites(double receivers) {
     constexpr auto kFirst = static_cast<double>(kMostSites);
@@ -50,7 +54,7 @@ Work bounce_rows_work(const SubjectCost& cost) {
     // The light of a medium arrives at its samples instead of its receivers.
     const double rays = cost.layout.translucent && !cost.layout.at_entry
                             ? kRaysOfAveraged
-                            : count_bounce_rays(cost.input.knobs[kBounceRays]);
+                            : rays_of_receiver(cost.input.knobs);
     const std::uint32_t bands = cost.layout.coloured ? 3 : 1;
     // Sites lie among receivers: the backs of sheets have none.
     double own = sides * cost.receivers, read = 0;
@@ -65,7 +69,7 @@ Work bounce_rows_work(const SubjectCost& cost) {
 // Of scatterers and their light, media left out.
 LightWork bounce_light_work(const CostInput& input) {
     const double scatterers =
-        std::min(static_cast<double>(count_scatterers(input.knobs)),
+        std::min(static_cast<double>(count_scatterers(rays_of_receiver(input.knobs))),
                  kHitShare * count_scatterer_rays(static_cast<std::size_t>(input.receivers)));
     LightWork work;
     work.cubemap_size = kBounceCubemap;
@@ -81,7 +85,7 @@ LightWork bounce_light_work(const CostInput& input) {
     const double sites = count_sites(input.receivers);
     work.bytes += sites * row;
     work.work.shared +=
-        ray_work(input, sites * count_rays_of_site(count_bounce_rays(input.knobs[kBounceRays])), 3);
+        ray_work(input, sites * count_rays_of_site(rays_of_receiver(input.knobs)), 3);
     work.work.shared +=
         (kBounces - 1) * scatterers * kRaysOfScatterer * kHitShare * row_cells(3) * kBounceCell;
     return work;
@@ -97,7 +101,9 @@ constexpr std::array<DecisionRule, 2> kRules{
 constexpr std::array<const KnobSpec*, 1> kKnobs{&kBounceRays};
 
 std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t& rays) {
-    const std::shared_ptr<const BounceLight> bounced = find_bounce_light(inputs, rays);
+    LightInputs wanted = inputs;
+    wanted.rays_of_receiver = rays_of_receiver(inputs.knobs);
+    const std::shared_ptr<const BounceLight> bounced = find_bounce_light(wanted, rays);
     if (!bounced) return nullptr;
     auto light = std::make_unique<OtherLight>();
     light->bands = bounced->bands;
@@ -193,7 +199,8 @@ PlanEntry decide_textures(const PlanInput& input) {
     const TextureFacts& textures = input.subject.textures;
     const Surroundings& all = input.subject.surroundings;
     const double cell =
-        kCells * std::sqrt(all.area / static_cast<double>(count_scatterers(input.knobs)));
+        kCells *
+        std::sqrt(all.area / static_cast<double>(count_scatterers(rays_of_receiver(input.knobs))));
     const bool is_unseen_here = is_unseen(input);
     const bool is_magnified = textures.texels_per_metre * cell <= 1;
     entry.bound = is_unseen_here || is_magnified ? 0 : all.brightest * textures.contrast;

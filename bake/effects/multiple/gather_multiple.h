@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/effects/multiple/cluster_tree.h"
 #include "bake/effects/multiple/gather_profile.h"
-#include "bake/transport/cluster_tree.h"
 
 namespace opaline::bake {
 

@@ -5,13 +5,13 @@
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/effects/multiple/cluster_tree.h"
 #include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/row_layout.h"
-#include "bake/transport/cluster_tree.h"
 #include "bake/transport/ray_scene.h"
-#include "bake/transport/sample_transport.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -7,7 +7,7 @@
 
 #include "bake/emitters/bake_emitters.h"
 #include "bake/emitters/emitter_knobs.h"
-#include "tests/bake/emitters/lamp_scenes.h"
+#include "tests/bake/lamps/lamp_scenes.h"
 
 namespace opaline::bake {
 namespace {

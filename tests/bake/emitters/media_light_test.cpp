@@ -1,6 +1,6 @@
 // Light that media send out, as it is read at hits and as it starts again; and media as lamps find
 // them.
-#include "bake/emitters/media_light.h"
+#include "bake/lamps/media_light.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "bake/emitters/light_media.h"
 #include "bake/emitters/media_patches.h"
-#include "tests/bake/emitters/lamp_scenes.h"
+#include "tests/bake/lamps/lamp_scenes.h"
 
 namespace opaline::bake {
 namespace {

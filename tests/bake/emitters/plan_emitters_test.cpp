@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "bake/emitters/emitter_knobs.h"
-#include "tests/bake/emitters/lamp_scenes.h"
+#include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/support/volumes.h"
 
 namespace opaline::bake {

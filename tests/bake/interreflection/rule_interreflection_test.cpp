@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/scene/inspect_scene.h"
-#include "tests/bake/interreflection/bounce_support.h"
+#include "tests/bake/exchange/bounce_support.h"
 
 namespace opaline::bake {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/effects/interreflection/bounce_light.h"
+#include "bake/exchange/bounce_light.h"
 #include "bake/scene/inspect_scene.h"
-#include "tests/bake/interreflection/bounce_support.h"
-#include "tests/bake/interreflection/textured_plates.h"
+#include "tests/bake/exchange/bounce_support.h"
+#include "tests/bake/exchange/textured_plates.h"
 
 namespace opaline::bake {
 namespace {

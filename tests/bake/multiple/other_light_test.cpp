@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "bake/effects/multiple/gather_multiple.h"
+#include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/transport/irradiance_transport.h"
-#include "bake/transport/sample_transport.h"
 #include "formats/opal/haar.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "bake/transport/sample_transport.h"
+#include "bake/effects/multiple/sample_transport.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/volumes/attenuation.h"
+#include "bake/transport/density/attenuation.h"
 
 #include <gtest/gtest.h>
 

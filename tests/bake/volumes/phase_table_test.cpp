@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "bake/scattering/phase.h"
-#include "bake/volumes/scaled_phase.h"
+#include "bake/transport/density/scaled_phase.h"
 #include "formats/opal/phase_table.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/support/cut_phase.h"

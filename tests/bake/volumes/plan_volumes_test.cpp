@@ -4,8 +4,8 @@
 
 #include <numbers>
 
+#include "bake/transport/density/scaled_phase.h"
 #include "bake/volumes/largest_light.h"
-#include "bake/volumes/scaled_phase.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_work.h"
 #include "tests/bake/volumes/volume_support.h"

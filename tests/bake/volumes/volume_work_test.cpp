@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "bake/volumes/attenuation.h"
-#include "bake/volumes/density_space.h"
+#include "bake/transport/density/attenuation.h"
+#include "bake/transport/density/density_space.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/walk_parts.h"

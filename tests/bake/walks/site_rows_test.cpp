@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/transport/sample_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/bake/walks/body_walks.h"

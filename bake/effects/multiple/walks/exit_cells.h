@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bake/effects/multiple/walks/exit_lobe.h"
+#include "bake/effects/multiple/walks/sparse_vectors.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/sparse_vectors.h"
 
 namespace opaline::bake {
 

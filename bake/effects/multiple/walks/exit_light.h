@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "bake/effects/multiple/walks/exit_cells.h"
+#include "bake/effects/multiple/walks/sparse_vectors.h"
 #include "bake/effects/multiple/walks/walk.h"
 #include "bake/receivers/point_grid.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/sparse_vectors.h"
 
 namespace opaline::bake {
 

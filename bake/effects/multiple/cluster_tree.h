@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/effects/multiple/sample_transport.h"
+#include "bake/receivers/receiver.h"
+
+namespace opaline::bake {
+
+/// A node over a run of samples (multiple/README.md, "Hierarchy").
+struct ClusterNode {
+    glm::vec3 low, high;  ///< bounding box of its samples [m]
+    glm::vec3 centre;     ///< P of README.md: mean position, weighted by area and mean of E
+    std::uint32_t first = 0, count = 0;  ///< samples
+    std::uint32_t right = 0;  ///< second child; the first follows the node itself. 0: a leaf
+    float norm = 0;           ///< ||sum of A_i E_i||, before truncation, with other light [m^2]
+};
+
+/// Samples in kd-order (kd_order.h), and for each node the sum of the light that enters through it.
+struct ClusterTree {
+    std::vector<ClusterNode> nodes;  ///< depth-first; empty if there are no samples
+    SparseVectors sums;              ///< of each node: sum over its samples of A_i E_i [m^2]
+    std::vector<glm::vec3> position, normal;  ///< of the samples
+    std::vector<float> area;
+    SparseVectors samples;  ///< A_i E_i
+    /// The same of other light (SampleTransport::other), or none.
+    SparseVectors other_sums, other_samples;
+    double total_area = 0;
+    double mean_norm = 0;  ///< RMS over the samples of ||E_i||, weighted by area
+};
+
+/// The tree over samples in kd-order; it takes over their transport. Each node's sum adds its
+/// samples' vectors and is truncated once, to `kept` entries,
+/// and those of other light to `kept_of_light`.
+ClusterTree build_cluster_tree(std::span<const SurfaceSample> samples, SampleTransport transport,
+                               std::uint32_t cubemap_size, std::uint32_t kept,
+                               const Context& context, std::uint32_t kept_of_light = 32);
+
+}  // namespace opaline::bake

@@ -1,0 +1,146 @@
+#include "bake/exchange/bounce_rays.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "bake/base/frame.h"
+#include "bake/base/rng.h"
+#include "bake/path_differentials/visible_normal.h"
+#include "bake/receivers/receiver.h"
+#include "bake/scattering/fresnel.h"
+
+namespace opaline::bake {
+namespace {
+
+// Where a ray goes on, about the normal as third axis, and the share of its light that does.
+struct LobeSample {
+    glm::dvec3 direction{0, 0, 1};
+    double share = 0;
+};
+
+// What masking leaves: Lambda of [Heitz2014], masking is 1 / (1 + Lambda).
+double ggx_lambda(double cosine, double alpha) {
+    const double tangent2 = (1 - cosine * cosine) / (cosine * cosine);
+    return 0.5 * (std::sqrt(1 + alpha * alpha * tangent2) - 1);
+}
+
+// About one of the normals that the ray sees, drawn by u and v; the share is F G2 / G1.
+LobeSample sample_lobe(const formats::Medium& medium, const glm::dvec3& to_eye, float u, float v) {
+    const auto roughness = static_cast<double>(medium.roughness);
+    const double alpha = roughness * roughness;
+    const bool is_smooth = alpha < 1e-6;
+    const glm::dvec3 m = is_smooth
+                             ? glm::dvec3(0, 0, 1)
+                             : sample_visible_normal(to_eye, {alpha, alpha}, static_cast<double>(u),
+                                                     static_cast<double>(v))
+                                   .m;
+    const double cosine = std::clamp(glm::dot(to_eye, m), 0.0, 1.0);
+    const glm::dvec3 onward = 2 * cosine * m - to_eye;
+    if (!(onward.z > 0)) {
+        return {};
+    }
+    const double masked = 1 + ggx_lambda(to_eye.z, alpha);
+    return {onward, masked / (masked + ggx_lambda(onward.z, alpha)) *
+                        fresnel_reflectance(cosine, static_cast<double>(medium.eta))};
+}
+
+}  // namespace
+
+BounceGrid make_bounce_grid(std::uint32_t count) {
+    BounceGrid grid;
+    grid.side = static_cast<std::uint32_t>(std::lround(std::sqrt(static_cast<float>(count))));
+    grid.rays = count;
+    grid.cells.reserve(count);
+    const float width = 1 / static_cast<float>(grid.side);
+    for (std::uint32_t row = 0; row < grid.side; ++row) {
+        for (std::uint32_t column = 0; column < grid.side; ++column) {
+            const float left = static_cast<float>(column) * width, right = left + width;
+            const float low = static_cast<float>(row) * width, high = low + width;
+            const float u = 0.5f * (left + right), v = 0.5f * (low + high);
+            grid.cells.push_back(
+                {.middle = to_hemisphere(u, v),
+                 .across = to_hemisphere(std::min(right, 1.0f), v) - to_hemisphere(left, v),
+                 .along = to_hemisphere(u, std::min(high, 1.0f)) - to_hemisphere(u, low)});
+        }
+    }
+    return grid;
+}
+
+BounceGrid make_cut_grid(std::uint32_t count) {
+    constexpr std::uint32_t kFewest = 256;
+    constexpr double kCells = 0.64;
+    if (count < kFewest) return make_bounce_grid(count);
+    BounceGrid grid = make_bounce_grid(count_bounce_rays(kCells * count));
+    grid.quarters = make_bounce_grid(4 * grid.count()).cells;
+    grid.rays = count;
+    return grid;
+}
+
+MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
+                   std::uint32_t number) {
+    constexpr float kGrazing = 1e-3f;
+    const formats::Material& material = scene.materials[end.material];
+    if (!material.medium || material.sheet || !end.side.is_seen) {
+        return {};
+    }
+    const glm::vec3 normal = end.side.normal;
+    const Frame frame = make_frame(normal);
+    const glm::dvec3 to_eye(-glm::dot(frame.u, end.direction), -glm::dot(frame.v, end.direction),
+                            std::max(-glm::dot(normal, end.direction), kGrazing));
+    const auto u =
+        random_uniform(0, RandomStage::bounce_rays, key_of({end.position, end.direction}));
+    const LobeSample lobe = sample_lobe(*material.medium, glm::normalize(to_eye), u[0], u[1]);
+    return {.origin = end.position + end.error * normal,
+            .direction = glm::normalize(frame.to_world(glm::vec3(lobe.direction))),
+            .share = share * static_cast<float>(lobe.share),
+            .number = number};
+}
+
+std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
+                              const BounceTree& tree, std::vector<MirroredRay> open,
+                              std::vector<MirroredNode>& found) {
+    // Boundaries that face each other mirror a few hundredths of the arriving light, except at
+    // grazing angles.
+    constexpr int kMostMirrors = 4;
+    constexpr std::size_t kLanes = RayPacket::kSize;
+    const auto add = [&](std::uint32_t node, const MirroredRay& ray) {
+        if (node != formats::kNone) {
+            found.push_back({node, ray.share, ray.number});
+        }
+    };
+    std::uint64_t traced = 0;
+    for (int mirrors = 0; mirrors < kMostMirrors && !open.empty(); ++mirrors) {
+        std::vector<MirroredRay> next;
+        for (std::size_t begin = 0; begin < open.size(); begin += kLanes) {
+            const std::span<const MirroredRay> some =
+                std::span(open).subspan(begin, std::min(kLanes, open.size() - begin));
+            traced += some.size();
+            const PacketHits hits = closest_of(rays, some);
+            for (std::size_t i = 0; i < some.size(); ++i) {
+                const MirroredRay& ray = some[i];
+                if (hits.hit[i] == 0) {
+                    add(tree.sky_node(ray.direction), ray);
+                    continue;
+                }
+                const RayEnd end{.position = ray.origin + hits.distance[i] * ray.direction,
+                                 .direction = ray.direction,
+                                 .error = hits.error[i],
+                                 .material = hits.material[i],
+                                 .side = side_of_hit(scene, hits, i)};
+                if (!end.side.is_seen) continue;
+                add(tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0),
+                    ray);
+                const MirroredRay on = mirror(scene, end, ray.share, ray.number);
+                if (on.share > 0) {
+                    next.push_back(on);
+                }
+            }
+        }
+        open = std::move(next);
+    }
+    return traced;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <vector>
+
+#include "bake/base/frame.h"
+#include "bake/base/rng.h"
+#include "bake/exchange/bounce_tree.h"
+#include "bake/exchange/scatterers.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/packet_lane.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// A ray that meets a surface.
+struct RayEnd {
+    glm::vec3 position{0}, direction{0};  ///< [m]; unit, of the ray
+    float error = 0;                      ///< bound [m] on that of the position
+    std::uint32_t material = 0;
+    SeenSide side;
+};
+
+/// What the boundary of a medium mirrors of a ray's light, as one direction of its lobe.
+struct MirroredRay {
+    glm::vec3 origin{0}, direction{0};  ///< [m]; unit
+    float share = 0;                    ///< of the first ray's; 0: nothing is mirrored
+    std::uint32_t number = 0;           ///< of the first ray
+};
+
+/// By the Fresnel reflectance of its angle, about the facet's normal; of a rough boundary about one
+/// of the normals that the ray sees, GGX [Heitz2018], drawn by the ray's place and direction.
+/// Materials other than media mirror nothing here: their mirrored light is part of their radiosity
+/// (eval_surface_albedo).
+MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
+                   std::uint32_t number);
+
+/// The node that answers a mirrored ray: of a surface, or of the sky.
+struct MirroredNode {
+    std::uint32_t node = 0;
+    float share = 0;  ///< of the first ray's light
+    std::uint32_t number = 0;
+};
+
+/// Follows mirrored rays from medium to medium until they carry little light, and appends their
+/// hits to `found`. Returns the rays traced.
+std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
+                              const BounceTree& tree, std::vector<MirroredRay> open,
+                              std::vector<MirroredNode>& found);
+
+/// Rays that `wanted` becomes: the square of a multiple of 4, at least 16.
+inline std::uint32_t count_bounce_rays(double wanted) {
+    const double side = 4 * std::max(1.0, std::round(0.25 * std::sqrt(wanted)));
+    return static_cast<std::uint32_t>(side * side);
+}
+
+/// The point of the unit disk of two numbers in [0, 1]: concentric squares become circles.
+inline glm::vec2 to_disk(float u, float v) {
+    const float a = 2 * u - 1, b = 2 * v - 1;
+    if (a == 0 && b == 0) return glm::vec2(0);
+    constexpr float kQuarter = std::numbers::pi_v<float> / 4;
+    const bool first = std::abs(a) > std::abs(b);
+    const float r = first ? a : b;
+    const float angle = first ? kQuarter * (b / a) : 2 * kQuarter - kQuarter * (a / b);
+    return {r * std::cos(angle), r * std::sin(angle)};
+}
+
+/// One cell of the square from which cosine-distributed directions are drawn.
+struct BounceCell {
+    glm::vec3 middle{0, 0, 1};      ///< direction of its middle; unit, the normal is z
+    glm::vec3 across{0}, along{0};  ///< how far directions change over its two widths: secants
+};
+
+/// All cells, row by row, each with a ray.
+struct BounceGrid {
+    std::uint32_t side = 0;  ///< a multiple of 4
+    std::uint32_t rays = 0;  ///< of a point at most: some cells may be cut in four
+    std::vector<BounceCell> cells;
+    std::vector<BounceCell> quarters;  ///< of all cells, those of a grid of twice the side; or none
+
+    std::uint32_t count() const { return side * side; }
+    std::uint32_t most_cut() const { return quarters.empty() ? 0 : (rays - count()) / 3; }
+};
+/// `count`: of count_bounce_rays.
+BounceGrid make_bounce_grid(std::uint32_t count);
+/// Fewer cells than that, some two thirds, and quarters of them for the remaining rays. Below 256
+/// rays cells are too wide to locate edges, and none is cut.
+BounceGrid make_cut_grid(std::uint32_t count);
+
+/// The direction of two numbers in [0, 1], cosine-distributed if these are random: unit, the normal
+/// is z.
+inline glm::vec3 to_hemisphere(float u, float v) {
+    const glm::vec2 d = to_disk(u, v);
+    return {d.x, d.y, std::sqrt(std::max(0.0f, 1 - glm::dot(d, d)))};
+}
+
+/// What up to sixteen rays of places of their own meet. Each has an `origin` [m] and a `direction`.
+template <class Ray>
+PacketHits closest_of(const RayScene& scene, std::span<const Ray> rays) {
+    RayPacket packet = rays_from({});
+    LaneMask lanes{};
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        set_origin(packet, i, rays[i].origin);
+        set_lane(packet, lanes, i, rays[i].direction);
+    }
+    return scene.closest(lanes, packet);
+}
+
+/// A hit, and the ray and its cell.
+struct BounceHit {
+    const PacketHits& hits;
+    std::size_t lane = 0;
+    glm::vec3 origin{0}, direction{0};  ///< [m], unit
+    std::size_t cell = 0;               ///< of BounceGrid::cells
+};
+
+/// Where in its cell, of row and column, the ray of trace_bounces goes, in [0, 1)^2.
+inline glm::vec2 place_in_cell(const BounceGrid& grid, std::uint64_t seed, std::uint64_t key,
+                               std::uint32_t row, std::uint32_t column) {
+    const std::uint32_t packet = row / 4 * (grid.side / 4) + column / 4;
+    const std::uint32_t lane = row % 4 * 4 + column % 4, j = lane % 2;
+    const auto u = random_uniform(seed, RandomStage::bounce_rays, key, 8 * packet + lane / 2);
+    return {u[2 * j], u[2 * j + 1]};
+}
+
+/// Traces a cosine-distributed ray in each cell, in packets of neighbouring cells, and calls
+/// visit(hit) for each that hits something, in a fixed order. Cells are in the frame of the normal.
+/// Returns the rays. A point without a normal traces none.
+template <class Visit>
+std::uint64_t trace_bounces(const RayScene& rays, const Receiver& at, const BounceGrid& grid,
+                            std::uint64_t seed, Visit&& visit) {
+    if (at.normal == glm::vec3(0) || rays.is_empty()) return 0;
+    const float width = 1 / static_cast<float>(grid.side);
+    const Frame frame = make_frame(at.normal);
+    const std::uint64_t key = key_of(at);
+    RayPacket packet = rays_from(at.origin);
+    LaneMask lanes;
+    lanes.fill(-1);
+    std::uint32_t number = 0;
+    for (std::uint32_t row = 0; row < grid.side; row += 4) {
+        for (std::uint32_t column = 0; column < grid.side; column += 4, ++number) {
+            for (std::uint32_t i = 0; i < RayPacket::kSize; i += 2) {
+                const auto u =
+                    random_uniform(seed, RandomStage::bounce_rays, key, 8 * number + i / 2);
+                for (std::uint32_t j = 0; j < 2; ++j) {
+                    const std::uint32_t lane = i + j;
+                    const std::uint32_t across = column + lane % 4, along = row + lane / 4;
+                    set_lane(packet, lanes, lane,
+                             frame.to_world(to_hemisphere(
+                                 (static_cast<float>(across) + u[2 * j]) * width,
+                                 (static_cast<float>(along) + u[2 * j + 1]) * width)));
+                }
+            }
+            const PacketHits hits = rays.closest(lanes, packet);
+            for (std::size_t lane = 0; lane < RayPacket::kSize; ++lane) {
+                if (hits.hit[lane] != 0) {
+                    const std::size_t cell = (row + lane / 4) * grid.side + column + lane % 4;
+                    visit(BounceHit{hits, lane, at.origin, direction_of(packet, lane), cell});
+                }
+            }
+        }
+    }
+    return grid.count();
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,200 @@
+#include "bake/exchange/medium_answer.h"
+
+#include <algorithm>
+#include <glm/glm.hpp>
+#include <limits>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/plan/medium_exitance.h"
+#include "bake/receivers/surface_patches.h"
+#include "bake/scattering/fresnel.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::size_t kPlane = kMostPatches;
+
+// Which patch light enters through.
+class PatchFinder {
+  public:
+    PatchFinder(const MediumAnswer& answer, std::span<const Scatterer> scatterers,
+                const BounceTree& tree)
+        : answer_(answer), scatterers_(scatterers), tree_(tree), patch_(scatterers.size()) {
+        for (std::size_t m = 0; m < answer.members.size(); ++m) {
+            patch_[answer.members[m]] = answer.patch[m];
+        }
+    }
+
+    std::uint32_t patch_at(const Receiver& at) const {
+        const std::uint32_t material = scatterers_[answer_.members.front()].material;
+        const std::uint32_t node = tree_.find(at.origin, {material, false, at.normal}, 0);
+        if (node != formats::kNone) return patch_[tree_.scatterer_of(node)];
+        // No scatterer faces that way.
+        float least = std::numeric_limits<float>::max();
+        std::uint32_t nearest = answer_.members.front();
+        for (const std::uint32_t i : answer_.members) {
+            const glm::vec3 d = scatterers_[i].position - at.origin;
+            const float square =
+                glm::dot(d, d) * (glm::dot(scatterers_[i].normal, at.normal) > 0 ? 1.0f : 4.0f);
+            if (square < least) {
+                least = square;
+                nearest = i;
+            }
+        }
+        return patch_[nearest];
+    }
+
+  private:
+    const MediumAnswer& answer_;
+    std::span<const Scatterer> scatterers_;
+    const BounceTree& tree_;
+    std::vector<std::uint32_t> patch_;  // by scatterer
+};
+
+// Irradiance 1 on one patch: its column.
+OtherLight make_columns(const PatchFinder& finder) {
+    OtherLight columns;
+    columns.bands = 1;
+    columns.environment = false;
+    columns.add = [&finder](const LitPoint& point, std::uint32_t, std::span<float> rows) {
+        rows[finder.patch_at(point.receiver)] += 1;
+        return std::uint64_t{0};
+    };
+    return columns;
+}
+
+// The dipole may return more than enters, as its half space ends nowhere; walks' rows vary.
+void bound(MediumAnswer& answer, float most) {
+    for (std::uint32_t to = 0; to < answer.patches; ++to) {
+        const std::span<BandColour> row =
+            std::span(answer.share).subspan(std::size_t{to} * answer.patches, answer.patches);
+        const BandColour sum = answer.sum_of(to);
+        for (std::size_t b = 0; b < sum.size(); ++b) {
+            if (!(sum[b] > most)) continue;
+            for (BandColour& share : row) {
+                share[b] *= most / sum[b];
+            }
+        }
+    }
+}
+
+}  // namespace
+
+BandColour MediumAnswer::sum_of(std::uint32_t to) const {
+    BandColour sum{};
+    for (std::size_t from = 0; from < patches; ++from) {
+        for (std::size_t b = 0; b < sum.size(); ++b) {
+            sum[b] += share[std::size_t{to} * patches + from][b];
+        }
+    }
+    return sum;
+}
+
+MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> scatterers,
+                         const BounceTree& tree, std::span<const float> cells,
+                         std::vector<std::uint32_t> members) {
+    MediumAnswer answer;
+    answer.members = std::move(members);
+    std::vector<Receiver> outside;
+    std::vector<BodyPoint> inside;
+    for (const std::uint32_t i : answer.members) {
+        outside.push_back(scatterers[i].outside);
+        inside.push_back(scatterers[i].inside);
+        answer.area.push_back(cells[i]);
+    }
+    answer.patch = cut_into_patches(inside, kMostPatches);
+    answer.patches = 1 + std::ranges::max(answer.patch);
+    answer.share.assign(std::size_t{answer.patches} * answer.patches, {});
+    const PatchFinder finder(answer, scatterers, tree);
+    const std::uint32_t material = scatterers[answer.members.front()].material;
+    const std::vector<std::vector<float>> rows =
+        inputs.answer_of_medium(material, make_columns(finder), outside, inside, kBounceCubemap);
+    if (inputs.context.cancelled() || rows.empty()) return answer;
+    const RowLayout& layout = inputs.layouts[material];
+    const float eta = inputs.bake.scene.materials[material].medium->eta;
+    std::vector<float> count(answer.patches);
+    for (const std::uint32_t p : answer.patch) {
+        count[p] += 1;
+    }
+    const std::uint32_t own_bands = layout.bands();
+    for (std::size_t m = 0; m < rows.size(); ++m) {
+        const std::uint32_t to = answer.patch[m];
+        const std::vector<float> weight = weigh_rows_of_medium(layout, eta, inside[m].normal);
+        for (std::size_t k = 0; k < weight.size(); ++k) {
+            const float factor = weight[k] / count[to];
+            for (std::uint32_t b = 0; b < 3; ++b) {
+                const std::size_t plane = k * own_bands + std::min(b, own_bands - 1);
+                for (std::size_t from = 0; from < answer.patches; ++from) {
+                    answer.share[to * std::size_t{answer.patches} + from][b] +=
+                        factor * rows[m][plane * kPlane + from];
+                }
+            }
+        }
+    }
+    for (BandColour& share : answer.share) {
+        std::ranges::for_each(share, [](float& s) { s = std::max(s, 0.0f); });
+    }
+    bound(answer, static_cast<float>(1 - fresnel_moments(double{eta}).external));
+    return answer;
+}
+
+void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterers,
+                const CodedRows& irradiance, std::uint32_t bands, const Context& context,
+                CodedRows& radiosity) {
+    const std::size_t size = irradiance.size(), patches = answer.patches;
+    std::vector<float> mean(patches * size), area(patches);
+    for (std::size_t m = 0; m < answer.members.size(); ++m) {
+        area[answer.patch[m]] += answer.area[m];
+    }
+    const auto row_of = [&](std::vector<float>& rows, std::size_t patch) {
+        return std::span(rows).subspan(patch * size, size);
+    };
+    for (std::size_t m = 0; m < answer.members.size(); ++m) {
+        const std::uint32_t p = answer.patch[m];
+        irradiance.add(answer.members[m], area[p] > 0 ? answer.area[m] / area[p] : 0,
+                       row_of(mean, p));
+    }
+    std::vector<float> others(patches * size);
+    for_each_block_in_order(
+        patches, 8, context,
+        [&](Range range) {
+            for (std::size_t to = range.begin; to < range.end; ++to) {
+                const std::span<float> sum = row_of(others, to);
+                for (std::size_t from = 0; from < patches; ++from) {
+                    const BandColour& share = answer.share[to * patches + from];
+                    if (from == to) continue;
+                    for (std::size_t b = 0; b < bands; ++b) {
+                        const float* const e = &mean[from * size + b * kPlane];
+                        float* const s = &sum[b * kPlane];
+                        for (std::size_t t = 0; t < kPlane; ++t) {
+                            s[t] += share[b] * e[t];
+                        }
+                    }
+                }
+            }
+            return 0;
+        },
+        [](Range, int) {});
+    for_each_block_in_order(
+        answer.members.size(), 64, context,
+        [&](Range range) {
+            for (std::size_t m = range.begin; m < range.end; ++m) {
+                const std::uint32_t i = answer.members[m], p = answer.patch[m];
+                std::vector<float> own = irradiance.row(i), to = radiosity.row(i);
+                const formats::Rgb c = scatterers[i].albedo.diffuse;
+                const BandColour colour =
+                    bands == 1 ? BandColour{formats::luminance(c)} : BandColour{c.r, c.g, c.b};
+                for (std::size_t k = 0; k < size; ++k) {
+                    const std::size_t b = k / kPlane;
+                    to[k] += colour[b] *
+                             (answer.share[p * patches + p][b] * own[k] + others[p * size + k]);
+                }
+                radiosity.set(i, to);
+            }
+            return 0;
+        },
+        [](Range, int) {});
+}
+
+}  // namespace opaline::bake

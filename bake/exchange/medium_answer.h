@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/exchange/bounce_tree.h"
+#include "bake/exchange/scatterers.h"
+#include "bake/plan/effect.h"
+#include "bake/transport/coded_rows.h"
+
+namespace opaline::bake {
+
+/// By band; of one band the first.
+using BandColour = std::array<float, 3>;
+
+/// What scatters back out of a medium: one operator for light of the sky and of other surfaces, so
+/// that no light is created between them. Light that enters a patch of the surface leaves every
+/// patch with a share of it. Shares of what arrives at once everywhere add up to no more than what
+/// enters, 1 - F_ext: with K of the rays between surfaces, whose shares add up to 1, no surface is
+/// brighter than the sky around it.
+struct MediumAnswer {
+    std::vector<std::uint32_t> members;  ///< scatterers on the medium
+    std::vector<std::uint32_t> patch;    ///< of each of them
+    std::vector<float> area;             ///< of each of them [m^2]
+    std::uint32_t patches = 0;
+    /// Exitance of patch `to` by irradiance 1 on patch `from`, but for the base colour: to *
+    /// patches + from. Of what scatters; what crosses the body straight is no part of it.
+    std::vector<BandColour> share;
+
+    /// Exitance by irradiance 1 on all patches.
+    BandColour sum_of(std::uint32_t to) const;
+};
+
+/// Patches of one medium, at most: columns of the rows that say what it answers.
+inline constexpr std::uint32_t kMostPatches = 6 * kBounceCubemap * kBounceCubemap;
+
+/// The answer of the scatterers `members`, all of one medium, from rows that its effects make of
+/// light on one patch each; zeros where no effect scatters. `tree` holds all `scatterers`.
+MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> scatterers,
+                         const BounceTree& tree, std::span<const float> cells,
+                         std::vector<std::uint32_t> members);
+
+/// Adds what the medium makes of irradiance to rows of radiosity,
+///     B_i += c_i (A_pp E_i + sum over other patches q of A_pq E_q),   p the patch of i,
+/// E_q the mean over the patch: within its own patch a point answers what arrives at it. Rows, of
+/// all scatterers: `bands` planes; others' stay as they are.
+void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterers,
+                const CodedRows& irradiance, std::uint32_t bands, const Context& context,
+                CodedRows& radiosity);
+
+}  // namespace opaline::bake

@@ -1,0 +1,106 @@
+#include "bake/exchange/mirrored_cells.h"
+
+#include <algorithm>
+#include <numbers>
+#include <utility>
+
+#include "bake/base/rng.h"
+
+namespace opaline::bake {
+namespace {
+
+// First of the random numbers of parts: those of cells and of quarters come before.
+constexpr std::uint32_t kOfParts = 3u << 30;
+// Rays that all cells of a point together would have, were all of them mirrored.
+constexpr std::uint32_t kMirroredRays = 1024;
+
+std::uint32_t count_parts(std::uint32_t cells) {
+    return cells * 16 <= kMirroredRays ? 4 : cells * 2 <= kMirroredRays ? 2 : 1;
+}
+
+}  // namespace
+
+MirroredCells::MirroredCells(const formats::Scene& scene, const RayScene& rays, const Receiver& at,
+                             const Frame& frame, const BounceGrid& grid, std::uint64_t seed)
+    : scene_(scene),
+      rays_(rays),
+      at_(at),
+      frame_(frame),
+      grid_(grid),
+      seed_(seed),
+      key_(key_of(at)),
+      parts_(count_parts(grid.count())) {}
+
+void MirroredCells::add(const BounceEnd& end, float share) {
+    const glm::vec3 y = at_.origin + end.distance * end.direction;
+    const MirroredRay own =
+        mirror(scene_, {y, end.direction, end.error, end.material, end.side}, share, 0);
+    if (!(own.share > 0)) return;
+    const std::size_t first = open_.size();
+    open_.push_back(own);
+    if (parts_ > 1 && !end.is_quarter) {
+        add_parts(end, share);
+    }
+    const float each = 1 / static_cast<float>(open_.size() - first);
+    for (std::size_t i = first; i < open_.size(); ++i) {
+        open_[i].share *= each;
+        open_[i].number = static_cast<std::uint32_t>(i);
+        of_hemisphere_.push_back(each * share);
+    }
+}
+
+// One ray in each part but that of the cell's own ray.
+void MirroredCells::add_parts(const BounceEnd& end, float share) {
+    const std::uint32_t count = parts_ * parts_;
+    const auto per_side = static_cast<float>(parts_);
+    const float width = 1 / (static_cast<float>(grid_.side) * per_side);
+    const std::uint32_t column = end.cell % grid_.side, row = end.cell / grid_.side;
+    const glm::vec2 place = place_in_cell(grid_, seed_, key_, row, column);
+    const std::uint32_t taken = static_cast<std::uint32_t>(place.y * per_side) * parts_ +
+                                static_cast<std::uint32_t>(place.x * per_side);
+    RayPacket packet = rays_from(at_.origin);
+    LaneMask lanes{};
+    for (std::uint32_t part = 0; part < count; ++part) {
+        if (part == taken) continue;
+        const std::uint32_t part_row = part / parts_;
+        const auto u = random_uniform(seed_, RandomStage::bounce_rays, key_,
+                                      kOfParts + end.cell * count + part);
+        const auto across = static_cast<float>(column * parts_ + part % parts_) + u[0];
+        const auto along = static_cast<float>(row * parts_ + part_row) + u[1];
+        set_lane(packet, lanes, part,
+                 frame_.to_world(to_hemisphere(across * width, along * width)));
+    }
+    const PacketHits hits = rays_.closest(lanes, packet);
+    traced_ += count - 1;
+    for (std::uint32_t part = 0; part < count; ++part) {
+        if (hits.hit[part] == 0) continue;
+        const glm::vec3 d = direction_of(packet, part);
+        const MirroredRay ray = mirror(scene_,
+                                       {at_.origin + hits.distance[part] * d, d, hits.error[part],
+                                        hits.material[part], side_of_hit(scene_, hits, part)},
+                                       share, 0);
+        if (ray.share > 0) {
+            open_.push_back(ray);
+        }
+    }
+}
+
+std::uint64_t MirroredCells::follow(const BounceTree& tree, std::vector<NodeWeight>& weights) {
+    std::vector<MirroredNode> found;
+    traced_ += follow_mirrored(scene_, rays_, tree, std::move(open_), found);
+    open_.clear();
+    std::ranges::stable_sort(found, {}, &MirroredNode::node);
+    for (std::size_t begin = 0, end = 0; begin < found.size(); begin = end) {
+        float share = 0, hemisphere = 0;
+        for (end = begin; end < found.size() && found[end].node == found[begin].node; ++end) {
+            share += found[end].share;
+            hemisphere += of_hemisphere_[found[end].number];
+        }
+        const float most =
+            std::numbers::inv_pi_v<float> * tree.solid_angle_of_sky(found[begin].node);
+        weights.push_back({found[begin].node, share * std::min(1.0f, most / hemisphere)});
+    }
+    return traced_;
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bake/base/frame.h"
+#include "bake/exchange/bounce_ends.h"
+#include "bake/exchange/bounce_gather.h"
+#include "bake/exchange/bounce_rays.h"
+#include "bake/exchange/bounce_tree.h"
+#include "bake/receivers/receiver.h"
+#include "bake/transport/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// What boundaries of media mirror of the cells of a point: one cell sees much of the sky, since
+/// a curved boundary spreads its directions. A single ray a cell finds the sun by chance, and the
+/// point is a bright speck among others. So a cell whose ray meets a medium is mirrored by several
+/// rays, one in each part of the cell. The cell's own ray alone decides that a medium is met: of
+/// the others, those that miss media do not count, and the mean of the rest takes the cell's share.
+class MirroredCells {
+  public:
+    /// Keeps the references.
+    MirroredCells(const formats::Scene& scene, const RayScene& rays, const Receiver& at,
+                  const Frame& frame, const BounceGrid& grid, std::uint64_t seed);
+
+    /// Adds the cell, with `share` of the point's irradiance, of an end that is met and seen; one
+    /// that no medium mirrors adds nothing.
+    void add(const BounceEnd& end, float share);
+
+    /// Appends what the cells mirror, and returns the rays that were traced.
+    ///
+    /// From no texel of the sky comes more than a flat mirror shows: the share of the hemisphere
+    /// in which the texel is mirrored is at most its solid angle over pi, and the texel's weight is
+    /// scaled by what exceeds that. This bounds what one path can do. It loses light where
+    /// boundaries focus it; the truth of a self-check keeps that light.
+    std::uint64_t follow(const BounceTree& tree, std::vector<NodeWeight>& weights);
+
+  private:
+    void add_parts(const BounceEnd& end, float share);
+
+    const formats::Scene& scene_;
+    const RayScene& rays_;
+    const Receiver& at_;
+    const Frame& frame_;
+    const BounceGrid& grid_;
+    std::uint64_t seed_ = 0, key_ = 0, traced_ = 0;
+    std::uint32_t parts_ = 1;           // in the width of a cell: 1, 2 or 4
+    std::vector<MirroredRay> open_;     // each numbered by its place here
+    std::vector<float> of_hemisphere_;  // that each stands for
+};
+
+}  // namespace opaline::bake

@@ -1,0 +1,221 @@
+#include "bake/exchange/scatterer_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "bake/base/ordered_parallel.h"
+#include "bake/plan/medium_exitance.h"
+#include "bake/transport/irradiance_transport.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr std::uint32_t kCubemap = kBounceCubemap;
+constexpr std::size_t kRowTexels = 6 * kCubemap * kCubemap;
+
+BandColour to_bands(formats::Rgb c, std::uint32_t bands) {
+    return bands == 1 ? BandColour{formats::luminance(c), 0, 0} : BandColour{c.r, c.g, c.b};
+}
+
+std::vector<float> make_even_sky() {
+    const std::vector<double> face = formats::texel_solid_angles(kCubemap);
+    std::vector<float> light(kRowTexels);
+    for (std::size_t t = 0; t < kRowTexels; ++t) {
+        light[t] = static_cast<float>(face[t % face.size()]);
+    }
+    formats::haar_forward_cube(std::span<float>(light), kCubemap);
+    return light;
+}
+
+struct LitScatterers {
+    const LightInputs& inputs;
+    std::span<Scatterer> scatterers;
+    std::vector<float> even_sky;  // a light of radiance 1, in the basis of rows
+    ScattererLight light;
+
+    const formats::Material& material(std::size_t i) const {
+        return inputs.bake.scene.materials[scatterers[i].material];
+    }
+};
+
+// Light of the environment at a point, E.
+std::uint64_t gather_row(const LitScatterers& field, const DirectionSet& directions,
+                         const Receiver& at, std::span<float> row) {
+    const std::uint64_t rays = gather_irradiance(field.inputs.bake.rays, directions, at, row);
+    formats::haar_forward_cube(row, kCubemap);
+    return rays;
+}
+
+void add_scaled(std::span<const float> from, const BandColour& factor, std::uint32_t bands,
+                std::span<float> to) {
+    for (std::size_t b = 0; b < bands; ++b) {
+        for (std::size_t k = 0; k < kRowTexels; ++k) {
+            to[b * kRowTexels + k] += factor[b] * from[k];
+        }
+    }
+}
+
+// Of E.
+float openness_of(const LitScatterers& field, std::span<const float> row) {
+    return std::clamp(static_cast<float>(relit(row, field.even_sky)) / std::numbers::pi_v<float>,
+                      0.0f, 1.0f);
+}
+
+// B of an opaque or thin-walled surface: rho E. What a lobe mirrors crosses no thin wall.
+std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions, std::size_t i) {
+    Scatterer& s = field.scatterers[i];
+    std::vector<float> row(kRowTexels), emitted(field.light.row_size());
+    formats::Rgb reflect = s.albedo.sum(), transmit{0, 0, 0};
+    if (const auto& sheet = field.material(i).sheet) {
+        reflect = s.albedo.diffuse * sheet->reflect + s.albedo.mirrored;
+        transmit = s.albedo.diffuse * sheet->transmit;
+    }
+    field.light.reflect[i] = to_bands(reflect, field.light.bands);
+    field.light.transmit[i] = to_bands(transmit, field.light.bands);
+    std::uint64_t rays = gather_row(field, directions, s.outside, row);
+    s.openness = openness_of(field, row);
+    add_scaled(row, field.light.reflect[i], field.light.bands, emitted);
+    if (field.material(i).sheet) {
+        rays += gather_row(field, directions, s.beyond, row);
+        add_scaled(row, field.light.transmit[i], field.light.bands, emitted);
+    }
+    field.light.emitted.set(i, emitted);
+    return rays;
+}
+
+// What leaves a medium at a point without what its boundary mirrors: sum of g_k T_k.
+void add_leaving(const RowLayout& layout, std::span<const float> weight,
+                 std::span<const float> rows, std::uint32_t bands, std::span<float> to) {
+    const std::uint32_t own_bands = layout.bands();
+    for (std::size_t k = 0; k < weight.size(); ++k) {
+        for (std::uint32_t b = 0; b < bands; ++b) {
+            const std::size_t from = k * own_bands + std::min(b, own_bands - 1);
+            for (std::size_t t = 0; t < kRowTexels; ++t) {
+                to[b * kRowTexels + t] += weight[k] * rows[from * kRowTexels + t];
+            }
+        }
+    }
+}
+
+// Light of the environment at points of one medium; what crosses it straight to them.
+std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
+                           const MediumAnswer& answer, CodedRows& irradiance) {
+    const std::span<const std::uint32_t> members = answer.members;
+    const std::uint32_t material = field.scatterers[members.front()].material;
+    const std::uint32_t bands = field.light.bands;
+    std::uint64_t rays = 0;
+    for_each_block_in_order(
+        members.size(), 16, field.inputs.context,
+        [&](Range range) {
+            std::uint64_t traced = 0;
+            std::vector<float> row(kRowTexels), planes;
+            for (std::size_t m = range.begin; m < range.end; ++m) {
+                Scatterer& s = field.scatterers[members[m]];
+                std::ranges::fill(row, 0.0f);
+                traced += gather_row(field, directions, s.outside, row);
+                s.openness = openness_of(field, row);
+                planes.clear();
+                for (std::uint32_t b = 0; b < bands; ++b) {
+                    planes.insert(planes.end(), row.begin(), row.end());
+                }
+                irradiance.set(members[m], planes);
+            }
+            return traced;
+        },
+        [&](Range, std::uint64_t traced) { rays += traced; });
+    if (!field.inputs.look_through || !field.inputs.look_through(material)) return rays;
+    std::vector<Receiver> outside;
+    std::vector<BodyPoint> inside;
+    for (const std::uint32_t i : members) {
+        outside.push_back(field.scatterers[i].outside);
+        inside.push_back(field.scatterers[i].inside);
+    }
+    const std::vector<std::vector<float>> rows =
+        field.inputs.crossing_rows(material, outside, inside, kCubemap);
+    if (field.inputs.context.cancelled()) return rays;
+    field.light.crossing.resize(field.scatterers.size());
+    const RowLayout& layout = field.inputs.layouts[material];
+    const float eta = field.inputs.bake.scene.materials[material].medium->eta;
+    std::vector<float> leaving(field.light.row_size());
+    for (std::size_t m = 0; m < rows.size(); ++m) {
+        std::ranges::fill(leaving, 0.0f);
+        add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), rows[m], bands,
+                    leaving);
+        field.light.crossing.set(members[m], leaving);
+    }
+    return rays;
+}
+
+// B of media, from what they make of light on each patch; without what boundaries mirror
+// (bounce_rays.h).
+std::uint64_t light_media(LitScatterers& field, const DirectionSet& directions) {
+    std::vector<std::vector<std::uint32_t>> members(field.inputs.layouts.size());
+    bool is_any = false;
+    for (std::uint32_t i = 0; i < field.scatterers.size(); ++i) {
+        const std::uint32_t material = field.scatterers[i].material;
+        if (field.inputs.layouts[material].translucent) {
+            members[material].push_back(i);
+            is_any = true;
+        }
+    }
+    if (!is_any) return 0;
+    const BounceTree tree(field.scatterers, field.inputs.layouts.size(), 0);
+    const std::vector<float> cells = tree.cells();
+    CodedRows irradiance(field.scatterers.size(), field.light.row_size());
+    std::uint64_t rays = 0;
+    for (std::vector<std::uint32_t>& own : members) {
+        if (own.empty() || field.inputs.context.cancelled()) continue;
+        field.light.answers.push_back(
+            find_answer(field.inputs, field.scatterers, tree, cells, std::move(own)));
+        const MediumAnswer& answer = field.light.answers.back();
+        rays += light_medium(field, directions, answer, irradiance);
+        add_answer(answer, field.scatterers, irradiance, field.light.bands, field.inputs.context,
+                   field.light.emitted);
+    }
+    return rays;
+}
+
+std::uint64_t light_all(LitScatterers& field) {
+    const DirectionSet directions = make_direction_set(kCubemap);
+    std::uint64_t rays = 0;
+    constexpr std::size_t kBlock = 16;
+    const auto is_inside = [&](std::size_t i) {
+        return field.inputs.layouts[field.scatterers[i].material].translucent;
+    };
+    for_each_block_in_order(
+        field.scatterers.size(), kBlock, field.inputs.context,
+        [&](Range range) {
+            std::uint64_t traced = 0;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                traced += is_inside(i) ? 0 : light_surface(field, directions, i);
+            }
+            return traced;
+        },
+        [&](Range, std::uint64_t traced) { rays += traced; });
+    rays += light_media(field, directions);
+    return rays;
+}
+
+}  // namespace
+
+ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
+                                std::uint32_t bands, std::uint64_t& rays) {
+    const std::size_t count = scatterers.size();
+    LitScatterers field{inputs,
+                        scatterers,
+                        make_even_sky(),
+                        {bands,
+                         CodedRows(count, bands * kRowTexels),
+                         std::vector<BandColour>(count),
+                         std::vector<BandColour>(count),
+                         {},
+                         CodedRows(0, bands * kRowTexels)}};
+    rays += light_all(field);
+    return std::move(field.light);
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/exchange/bounce_tree.h"
+#include "bake/exchange/medium_answer.h"
+#include "bake/exchange/scatterers.h"
+#include "bake/plan/effect.h"
+#include "bake/transport/coded_rows.h"
+
+namespace opaline::bake {
+
+/// What scatterers make of the environment's light and of each other's.
+struct ScattererLight {
+    std::uint32_t bands = 3;                    ///< or 1
+    CodedRows emitted;                          ///< B without bounces, band by band, Haar
+    std::vector<BandColour> reflect, transmit;  ///< of bounced light, on its side and through it
+    std::vector<MediumAnswer> answers;          ///< of media, which reflect as these say
+    /// B of light of the sky that crosses a medium straight, but for the base colour; of scatterers
+    /// on media that let some cross, else 0. No part of `emitted`.
+    CodedRows crossing;
+
+    std::size_t row_size() const { return emitted.size(); }
+};
+
+/// Traces rays to the environment; sets Scatterer::openness. Counts `rays`.
+ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
+                                std::uint32_t bands, std::uint64_t& rays);
+
+}  // namespace opaline::bake

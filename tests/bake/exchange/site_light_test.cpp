@@ -1,0 +1,112 @@
+#include "bake/exchange/site_light.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <utility>
+
+#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/exchange/bounce_gather.h"
+#include "bake/exchange/bounce_light.h"
+#include "tests/bake/exchange/bounce_support.h"
+
+namespace opaline::bake {
+namespace {
+
+// A room open to the front, walls of cells x cells squares.
+formats::Scene make_open_room(std::uint32_t cells = 32) {
+    using tests::make_quad;
+    formats::Scene room = tests::make_scene({
+        make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, cells),  // floor
+        make_quad({0, 1, 0}, {1, 0, 0}, {0, 0, 1}, cells),  // ceiling
+        make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, cells),  // back
+        make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, cells),  // left
+        make_quad({1, 0, 0}, {0, 0, 1}, {0, 1, 0}, cells),  // right
+    });
+    room.materials[0].base_color = {0.7f, 0.7f, 0.7f};
+    return room;
+}
+
+// A scene and the light between its surfaces.
+struct LitWorld : tests::LitScene {
+    LitWorld(formats::Scene made, double bounce_rays) : LitScene(std::move(made)) {
+        BakeOptions options;
+        options.set(kBounceRays, bounce_rays);
+        options.effects = {"direct", "interreflection"};
+        std::uint64_t traced = 0;
+        const Knobs knobs = resolve_knobs(options).value();
+        light = find_bounce_light(
+            {bake, knobs, {}, rows, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])}, traced);
+    }
+
+    std::vector<RowLayout> rows = layouts();
+    BakeInputs bake = inputs();
+    std::shared_ptr<const BounceLight> light;
+};
+
+// Most points of a room need no rays of their own. Row by row, against very many rays.
+TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
+    const LitWorld world(make_open_room(), 64);
+    const auto& light = world.light;
+    const auto& receivers = world.receivers;
+    ASSERT_NE(light, nullptr);
+    const std::size_t size = light->tree.row_size();
+    const BounceGrid many = make_bounce_grid(4096);
+    double of_sites = 0, of_rays = 0;
+    std::size_t without = 0, all = 0;
+    for (std::size_t i = 3; i < receivers.size(); i += 53, ++all) {
+        std::vector<float> read(size), traced(size), truth(size);
+        if (add_bounced(*light, {receivers[i]}, light->cubemap_size, read) > 0) {
+            continue;
+        }
+        ++without;
+        std::vector<NodeWeight> weights;
+        const auto gather = [&](const BounceGrid& grid, std::uint64_t seed, std::span<float> row) {
+            weigh_bounces(world.scene, world.rays, light->tree, receivers[i], grid, seed, weights);
+            add_node_rows(light->tree, weights, row);
+        };
+        gather(many, 1, truth);
+        gather(light->of_receiver, 2, traced);
+        for (std::size_t k = 0; k < size; ++k) {
+            of_sites += std::pow(static_cast<double>(read[k] - truth[k]), 2);
+            of_rays += std::pow(static_cast<double>(traced[k] - truth[k]), 2);
+        }
+    }
+    EXPECT_GT(2 * without, all);
+    // 1.3 times as much: a site's 16 stratified rays have more than four times the variance of 64.
+    EXPECT_LT(of_sites, 2 * of_rays) << "a fit to sites is worth nearly as much as 64 rays";
+}
+
+// Near corners light changes within a fifth of the distance to the next wall: sites follow.
+TEST(SiteLight, SitesAreDenserWhereSurfacesAreNear) {
+    const LitWorld world(make_open_room(120), 16);
+    ASSERT_NE(world.light, nullptr);
+    EXPECT_GT(world.light->site_rows.count(), kMostSites + 2000);
+    EXPECT_LT(world.light->site_rows.count(), world.receivers.size());
+    std::vector<SiteWeight> weights;
+    std::size_t without = 0, all = 0;
+    for (std::size_t i = 0; i < world.receivers.size(); i += 13, ++all) {
+        without += world.light->sites.weigh(world.receivers[i], 0.25f, weights) ? 0 : 1;
+    }
+    EXPECT_LT(static_cast<double>(without), 0.15 * static_cast<double>(all)) << without;
+}
+
+// Vertices that seams double trace the same rays: a second site there would pass for another one.
+TEST(SiteLight, CopiesOfAVertexAreOneSite) {
+    formats::Scene doubled = make_open_room();
+    const std::size_t walls = doubled.primitives.size();
+    for (std::size_t i = 0; i < walls; ++i) {
+        doubled.primitives.push_back(doubled.primitives[i]);
+    }
+    const auto sites_of = [&](formats::Scene scene) {
+        const LitWorld world(std::move(scene), 16);
+        return world.light->site_rows.count();
+    };
+    EXPECT_EQ(sites_of(make_open_room()), 5u * 33 * 33);
+    EXPECT_EQ(sites_of(doubled), 5u * 33 * 33);
+}
+
+}  // namespace
+}  // namespace opaline::bake
