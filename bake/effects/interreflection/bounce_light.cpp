@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kTexels = 6 * kBounceCubemap * kBounceCubemap;
 constexpr std::uint32_t kMostBounces = 64;
-// A bounce of less of the light than this is the last one.
+// A bounce of less of the light than this is the last one, where what follows it is less as well.
 constexpr double kLeastShare = 1e-3;
 
 // Scatterers and what they make of light.
@@ -120,29 +120,38 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
     return arrivals;
 }
 
-// Of all rows under an even sky.
-double sum_of_even(const CodedRows& rows) {
-    double sum = 0;
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-        for (std::size_t k = 0; k < rows.size(); k += kTexels / 6) {
-            sum += static_cast<double>(std::abs(rows.value(i, k)));
-        }
+// The bounces after a last one, by which a row changed.
+void add_rest(const SeriesEnd& series, std::span<const float> before, std::span<float> to) {
+    for (std::size_t k = 0; k < to.size(); ++k) {
+        to[k] += static_cast<float>(series.multiple(k / kTexels)) * (to[k] - before[k]);
     }
-    return sum;
 }
 
-// B = B_0 + rho gather(B), bounce by bounce: the tree's rows become all light that leaves.
-std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals,
-                          BounceTree& tree) {
+// Of all rows under an even sky, by band.
+std::vector<double> sums_of_even(const CodedRows& rows) {
+    std::vector<double> sums(rows.size() / kTexels);
+    for (std::size_t i = 0; i < rows.count(); ++i) {
+        for (std::size_t k = 0; k < rows.size(); k += kTexels / 6) {
+            sums[k / kTexels] += static_cast<double>(std::abs(rows.value(i, k)));
+        }
+    }
+    return sums;
+}
+
+// B = B_0 + rho gather(B), bounce by bounce: the tree's rows become all light that leaves. The last
+// bounce stands for those that would follow it as well.
+SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, BounceTree& tree) {
     const std::size_t size = field.light.row_size();
     CodedRows leaving = field.light.emitted;
     // What neighbours see is mostly the same and still in the cache.
     const std::vector<std::uint32_t> order = tree.neighbours();
-    const double emitted = sum_of_even(leaving);
-    double all = emitted, last_bounce = emitted;
-    std::uint32_t bounces = 0;
-    while (bounces < kMostBounces && last_bounce > kLeastShare * emitted &&
-           !field.inputs.context.cancelled()) {
+    SeriesEnd series;
+    series.add(sums_of_even(leaving));
+    SolveReport report;
+    for (bool is_last = false; !is_last && !field.inputs.context.cancelled(); ++report.bounces) {
+        report.remaining = series.remaining();
+        report.ratio = series.largest_ratio();
+        is_last = series.is_settled(kLeastShare) || report.bounces + 1 == kMostBounces;
         tree.set_rows(leaving, field.inputs.context);
         constexpr std::size_t kBlock = 64;
         for_each_block_in_order(
@@ -162,18 +171,18 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
                     add(arrivals[i].front, field.light.reflect[i]);
                     add(arrivals[i].back, field.light.transmit[i]);
                     add(arrivals[i].through, arrivals[i].of_through);
+                    if (is_last) {
+                        add_rest(series, leaving.row(i), to);
+                    }
                     leaving.set(i, to);
                 }
                 return 0;
             },
             [](Range, int) {});
-        const double sum = sum_of_even(leaving);
-        last_bounce = sum - all;
-        all = sum;
-        ++bounces;
+        series.add(sums_of_even(leaving));
     }
     tree.set_rows(leaving, field.inputs.context);
-    return bounces;
+    return report;
 }
 
 }  // namespace
@@ -212,7 +221,7 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .sites = {},
                     .site_rows = {}});
     const std::vector<Arrivals> arrivals = weigh_scatterers(field, light->tree, rays);
-    light->bounces = add_bounces(field, arrivals, light->tree);
+    light->report = add_bounces(field, arrivals, light->tree);
     light_sites(inputs, *light, rays);
     return light;
 }
