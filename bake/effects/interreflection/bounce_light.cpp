@@ -96,19 +96,26 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
     const BounceGrid grid = make_bounce_grid(kRaysOfScatterer);
     const std::vector<LookThrough> looks = looks_through(field.inputs);
     constexpr std::size_t kBlock = 16;
-    const auto weigh = [&](const Receiver& at, std::vector<NodeWeight>& weights) {
-        return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
-                             field.inputs.knobs.seed, weights, LookUp::nearest)
-            .rays;
+    // The sky is known by many more rays than others are: what these rays meet takes what the sky
+    // leaves, so that all shares add up to 1 and no bounce wins or loses light.
+    const auto weigh = [&](const Receiver& at, float openness, std::vector<NodeWeight>& weights) {
+        const BounceGather gathered =
+            weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
+                          field.inputs.knobs.seed, weights, LookUp::nearest);
+        for (NodeWeight& w : weights) {
+            w.weight *= (1 - openness) / gathered.met;
+        }
+        return gathered.rays;
     };
     for_each_block_in_order(
         arrivals.size(), kBlock, field.inputs.context,
         [&](Range range) {
             std::uint64_t traced = 0;
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                traced += weigh(field.scatterers[i].outside, arrivals[i].front);
+                const Scatterer& s = field.scatterers[i];
+                traced += weigh(s.outside, s.openness, arrivals[i].front);
                 if (field.passes_light(i)) {
-                    traced += weigh(field.scatterers[i].beyond, arrivals[i].back);
+                    traced += weigh(s.beyond, field.light.open_beyond[i], arrivals[i].back);
                 }
                 if (const LookThrough& look = looks[field.scatterers[i].material]) {
                     weigh_through(field, tree, look, i, arrivals[i], traced);

@@ -91,6 +91,7 @@ std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions
     add_scaled(row, field.light.reflect[i], field.light.bands, emitted);
     if (field.material(i).sheet) {
         rays += gather_row(field, directions, s.beyond, row);
+        field.light.open_beyond[i] = openness_of(field, row);
         add_scaled(row, field.light.transmit[i], field.light.bands, emitted);
     }
     field.light.emitted.set(i, emitted);
@@ -215,11 +216,12 @@ std::uint64_t light_all(LitScatterers& field) {
 ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
                                 std::uint32_t bands, std::uint64_t& rays) {
     const std::size_t count = scatterers.size();
-    LitScatterers field{inputs,
-                        scatterers,
-                        make_even_sky(),
-                        {bands, CodedRows(count, bands * kRowTexels),
-                         std::vector<BandColour>(count), std::vector<BandColour>(count)}};
+    LitScatterers field{
+        inputs,
+        scatterers,
+        make_even_sky(),
+        {bands, CodedRows(count, bands * kRowTexels), std::vector<BandColour>(count),
+         std::vector<BandColour>(count), std::vector<float>(count)}};
     rays += light_all(field);
     return std::move(field.light);
 }

@@ -20,6 +20,7 @@ struct ScattererLight {
     std::uint32_t bands = 3;                    ///< or 1
     CodedRows emitted;                          ///< B without bounces, band by band, Haar
     std::vector<BandColour> reflect, transmit;  ///< of bounced light, on its side and through it
+    std::vector<float> open_beyond;  ///< Scatterer::openness of the other side; of thin walls
 
     std::size_t row_size() const { return emitted.size(); }
 };
