@@ -119,6 +119,7 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
             1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
         const float near = 1 / std::max(end.distance, kNoDistance);
         gathered.nearness += share * near * near;
+        gathered.met += share;
         if (!end.side.is_seen) continue;
         const BounceCell& cell = (end.is_quarter ? grid.quarters : grid.cells)[end.cell];
         const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};

@@ -21,6 +21,7 @@ struct NodeWeight {
 struct BounceGather {
     std::uint64_t rays = 0;
     float nearness = 0;  ///< [1/m^2], mean of 1 / length^2; 0 of rays that meet nothing
+    float met = 0;       ///< share of the irradiance whose rays meet something, sending or black
 };
 
 /// Which rows answer a ray. Benchmarks compare them.

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::size_t kTexels = 6 * kBounceCubemap * kBounceCubemap;
 constexpr std::uint32_t kMostBounces = 64;
-// A bounce of less of the light than this is the last one.
+// A bounce of less of the light than this is the last one, where what follows it is less as well.
 constexpr double kLeastShare = 1e-3;
 
 // Scatterers and what they make of light.
@@ -141,19 +141,26 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
         }
     }
     constexpr std::size_t kBlock = 16;
-    const auto weigh = [&](const Receiver& at, std::vector<NodeWeight>& weights) {
-        return weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
-                             field.inputs.knobs.seed, weights, LookUp::nearest)
-            .rays;
+    // The sky is known by many more rays than others are: what these rays meet takes what the sky
+    // leaves, so that all shares add up to 1 and no bounce wins or loses light.
+    const auto weigh = [&](const Receiver& at, float openness, std::vector<NodeWeight>& weights) {
+        const BounceGather gathered =
+            weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
+                          field.inputs.knobs.seed, weights, LookUp::nearest);
+        for (NodeWeight& w : weights) {
+            w.weight *= (1 - openness) / gathered.met;
+        }
+        return gathered.rays;
     };
     for_each_block_in_order(
         arrivals.size(), kBlock, field.inputs.context,
         [&](Range range) {
             std::uint64_t traced = 0;
             for (std::size_t i = range.begin; i < range.end; ++i) {
-                traced += weigh(field.scatterers[i].outside, arrivals[i].front);
+                const Scatterer& s = field.scatterers[i];
+                traced += weigh(s.outside, s.openness, arrivals[i].front);
                 if (field.passes_light(i)) {
-                    traced += weigh(field.scatterers[i].beyond, arrivals[i].back);
+                    traced += weigh(s.beyond, field.light.open_beyond[i], arrivals[i].back);
                 }
                 if (const LookThrough& look = looks[field.scatterers[i].material]) {
                     weigh_through(field, tree, look, i, scattered[i], arrivals[i], traced);
@@ -165,20 +172,32 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
     return arrivals;
 }
 
-// Of all rows under an even sky.
-double sum_of_even(const CodedRows& rows) {
-    double sum = 0;
+// The bounces after a last one, by which rows changed.
+void add_rest(const SeriesEnd& series, const CodedRows& before, CodedRows& rows) {
     for (std::size_t i = 0; i < rows.count(); ++i) {
-        for (std::size_t k = 0; k < rows.size(); k += kTexels / 6) {
-            sum += static_cast<double>(std::abs(rows.value(i, k)));
+        const std::vector<float> from = before.row(i);
+        std::vector<float> to = rows.row(i);
+        for (std::size_t k = 0; k < to.size(); ++k) {
+            to[k] += static_cast<float>(series.multiple(k / kTexels)) * (to[k] - from[k]);
         }
+        rows.set(i, to);
     }
-    return sum;
 }
 
-// B = B_0 + rho gather(B), bounce by bounce: the tree's rows become all light that leaves.
-std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals,
-                          BounceTree& tree) {
+// Of all rows under an even sky, by band.
+std::vector<double> sums_of_even(const CodedRows& rows) {
+    std::vector<double> sums(rows.size() / kTexels);
+    for (std::size_t i = 0; i < rows.count(); ++i) {
+        for (std::size_t k = 0; k < rows.size(); k += kTexels / 6) {
+            sums[k / kTexels] += static_cast<double>(std::abs(rows.value(i, k)));
+        }
+    }
+    return sums;
+}
+
+// B = B_0 + rho gather(B), bounce by bounce: the tree's rows become all light that leaves. The last
+// bounce stands for those that would follow it as well.
+SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, BounceTree& tree) {
     const std::size_t size = field.light.row_size();
     CodedRows leaving = field.light.emitted;
     CodedRows arriving = field.light.answers.empty() ? CodedRows() : leaving;  // of media
@@ -187,12 +206,15 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
     };
     // What neighbours see is mostly the same and still in the cache.
     const std::vector<std::uint32_t> order = tree.neighbours();
-    const double emitted = sum_of_even(leaving);
-    double all = emitted, last_bounce = emitted;
-    std::uint32_t bounces = 0;
-    while (bounces < kMostBounces && last_bounce > kLeastShare * emitted &&
-           !field.inputs.context.cancelled()) {
+    SeriesEnd series;
+    series.add(sums_of_even(leaving));
+    SolveReport report;
+    for (bool is_last = false; !is_last && !field.inputs.context.cancelled(); ++report.bounces) {
+        report.remaining = series.remaining();
+        report.ratio = series.largest_ratio();
+        is_last = series.is_settled(kLeastShare) || report.bounces + 1 == kMostBounces;
         tree.set_rows(leaving, field.inputs.context);
+        const CodedRows before = is_last ? leaving : CodedRows();
         constexpr std::size_t kBlock = 64;
         for_each_block_in_order(
             arrivals.size(), kBlock, field.inputs.context,
@@ -226,13 +248,13 @@ std::uint32_t add_bounces(const Field& field, std::span<const Arrivals> arrivals
             add_answer(answer, field.scatterers, arriving, field.light.bands, field.inputs.context,
                        leaving);
         }
-        const double sum = sum_of_even(leaving);
-        last_bounce = sum - all;
-        all = sum;
-        ++bounces;
+        if (is_last) {
+            add_rest(series, before, leaving);
+        }
+        series.add(sums_of_even(leaving));
     }
     tree.set_rows(leaving, field.inputs.context);
-    return bounces;
+    return report;
 }
 
 // Light enters a medium where no receiver looks, too: points all over those that are seen.
@@ -284,7 +306,7 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .sites = {},
                     .site_rows = {}});
     const std::vector<Arrivals> arrivals = weigh_scatterers(field, light->tree, rays);
-    light->bounces = add_bounces(field, arrivals, light->tree);
+    light->report = add_bounces(field, arrivals, light->tree);
     light_sites(inputs, *light, rays);
     return light;
 }

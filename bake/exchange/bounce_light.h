@@ -9,6 +9,7 @@
 #include "bake/exchange/bounce_tree.h"
 #include "bake/exchange/gather_sites.h"
 #include "bake/exchange/scatterer_light.h"
+#include "bake/exchange/series_end.h"
 #include "bake/plan/effect.h"
 #include "bake/transport/coded_rows.h"
 #include "bake/transport/other_light.h"
@@ -35,9 +36,9 @@ struct BounceLight {
     std::vector<RowLayout> layouts;                ///< by material
     BounceTree tree;                               ///< rows: B, band by band
     BounceGrid of_site, of_receiver, of_averaged;  ///< rays; of a point whose light is averaged
-    std::uint32_t bounces = 0;                     ///< that were added before the next was too dark
-    GatherSites sites;                             ///< among receivers
-    CodedRows site_rows;                           ///< E, as long as the tree's
+    SolveReport report{};
+    GatherSites sites;    ///< among receivers
+    CodedRows site_rows;  ///< E, as long as the tree's
 
     /// Variance of a fit to sites, of that of one: with it the fit is as good as the rays `instead`
     /// of it, were these independent.

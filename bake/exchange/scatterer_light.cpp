@@ -81,6 +81,7 @@ std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions
     add_scaled(row, field.light.reflect[i], field.light.bands, emitted);
     if (field.material(i).sheet) {
         rays += gather_row(field, directions, s.beyond, row);
+        field.light.open_beyond[i] = openness_of(field, row);
         add_scaled(row, field.light.transmit[i], field.light.bands, emitted);
     }
     field.light.emitted.set(i, emitted);
@@ -213,7 +214,8 @@ ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> 
                          std::vector<BandColour>(count),
                          std::vector<BandColour>(count),
                          {},
-                         CodedRows(0, bands * kRowTexels)}};
+                         CodedRows(0, bands * kRowTexels),
+                         std::vector<float>(count)}};
     rays += light_all(field);
     return std::move(field.light);
 }

@@ -21,6 +21,7 @@ struct ScattererLight {
     /// B of light of the sky that crosses a medium straight, but for the base colour; of scatterers
     /// on media that let some cross, else 0. No part of `emitted`.
     CodedRows crossing;
+    std::vector<float> open_beyond;  ///< Scatterer::openness of the other side; of thin walls
 
     std::size_t row_size() const { return emitted.size(); }
 };

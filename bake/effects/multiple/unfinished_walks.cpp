@@ -9,7 +9,7 @@ namespace opaline::bake {
 std::optional<formats::Diagnostic> describe_unfinished(const std::string& material,
                                                        const WalkCounts& counts) {
     constexpr double kNoticed = 1e-3;
-    const double share = counts.unfinished / static_cast<double>(counts.walks);
+    const double share = counts.unfinished() / static_cast<double>(counts.walks);
     if (!(share >= kNoticed)) {  // nor without walks
         return std::nullopt;
     }

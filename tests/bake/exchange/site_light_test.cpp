@@ -5,11 +5,15 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
+#include "tests/bake/exchange/bounce_support.h"
+#include "formats/opal/cubemap.h"
+#include "formats/opal/haar.h"
 #include "tests/bake/exchange/bounce_support.h"
 
 namespace opaline::bake {
@@ -91,6 +95,30 @@ TEST(SiteLight, SitesAreDenserWhereSurfacesAreNear) {
         without += world.light->sites.weigh(world.receivers[i], 0.25f, weights) ? 0 : 1;
     }
     EXPECT_LT(static_cast<double>(without), 0.15 * static_cast<double>(all)) << without;
+}
+
+// Shares of the sky and of others add up to 1 at every scatterer, so white surfaces under a sky of
+// radiance 1 all have its radiosity, after any number of bounces.
+TEST(BounceLight, OfWhiteSurfacesIsThatOfTheSkyAtEveryScatterer) {
+    formats::Scene room = make_open_room();
+    room.materials[0].base_color = {1, 1, 1};
+    const LitWorld world(std::move(room), 16);
+    ASSERT_NE(world.light, nullptr);
+    const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
+    std::vector<float> even(std::size_t{6} * face.size());
+    for (std::size_t t = 0; t < even.size(); ++t) {
+        even[t] = static_cast<float>(face[t % face.size()]);
+    }
+    formats::haar_forward_cube(std::span<float>(even), kBounceCubemap);
+    const BounceTree& tree = world.light->tree;
+    for (std::size_t node = 0; node < tree.size(); ++node) {
+        const std::vector<float> row = tree.rows().row(node);
+        double sum = 0;
+        for (std::size_t k = 0; k < even.size(); ++k) {
+            sum += static_cast<double>(row[k]) * static_cast<double>(even[k]);
+        }
+        EXPECT_NEAR(sum / std::numbers::pi, 1, 0.01) << node;
+    }
 }
 
 // Vertices that seams double trace the same rays: a second site there would pass for another one.

@@ -15,7 +15,8 @@ WalkCounts lose(std::uint64_t lost, std::uint64_t endless, double unfinished) {
     counts.walks = 1000;
     counts.lost = lost;
     counts.endless = endless;
-    counts.unfinished = unfinished;
+    counts.ends.unfinished[0] = unfinished;
+    counts.ends.left[0] = 1000 - unfinished;
     return counts;
 }
 

@@ -11,13 +11,6 @@
 namespace opaline::tests {
 namespace {
 
-formats::Medium make_coloured_medium(glm::vec3 sigma_s, glm::vec3 sigma_a) {
-    formats::Medium medium = make_grey_medium(1, 1, 1.3f);
-    medium.sigma_s = {sigma_s.r, sigma_s.g, sigma_s.b};
-    medium.sigma_a = {sigma_a.r, sigma_a.g, sigma_a.b};
-    return medium;
-}
-
 BandsLeaving walk_down(const bake::WalkSpace& space, const bake::WalkStart& start,
                        std::uint32_t walks) {
     return walk_bands(space, start, walks, [](const auto& exit) { return exit.normal.y < 0; });

@@ -57,6 +57,14 @@ inline formats::Medium make_forward_medium(float sigma_t, float albedo, float g,
     return medium;
 }
 
+/// Scattering alike in all directions.
+inline formats::Medium make_coloured_medium(glm::vec3 sigma_s, glm::vec3 sigma_a) {
+    formats::Medium medium = make_grey_medium(1, 1, 1.3f);
+    medium.sigma_s = {sigma_s.r, sigma_s.g, sigma_s.b};
+    medium.sigma_a = {sigma_a.r, sigma_a.g, sigma_a.b};
+    return medium;
+}
+
 /// A slab between y = 0 and y = -thickness, practically without an end, and a start in its middle.
 inline Primitive make_wide_slab(float thickness) {
     Primitive slab = make_cube(1, false);

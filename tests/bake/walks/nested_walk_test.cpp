@@ -228,7 +228,7 @@ TEST(NestedWalk, TouchingOverlappingOpenAndTurnedBodiesEndAllWalksWithFiniteWeig
                 EXPECT_TRUE(sum >= 0 && sum < 6) << what << " " << sum;
             });
         }
-        EXPECT_LE(counts.unfinished, static_cast<double>(counts.walks) + 1) << what;
+        EXPECT_LE(counts.unfinished(), static_cast<double>(counts.walks) + 1) << what;
         return counts;
     };
     counts_of({{make_sphere(3), coat}, {make_sphere(3), core}}, "in one place");

@@ -127,6 +127,62 @@ TEST(SiteRows, BallOfAlbedoOneInAnEvenSkyShowsTheSky) {
     }
 }
 
+// Light of which every exit sees 1 in each band, and nothing else.
+bake::SparseVectors make_unit_light(const WalkedBall& ball) {
+    bake::SparseVectors light;
+    for (const SurfaceSample& s : ball.samples) {
+        if (light.size() % bake::SparseVectors::kPerBlock == 0) {
+            light.blocks.emplace_back();
+        }
+        bake::SparseVectors::Block& block = light.blocks.back();
+        block.index.push_back(0);
+        block.value.push_back(std::numbers::pi_v<float> * static_cast<float>(ball.escape) * s.area);
+        block.offset.push_back(static_cast<std::uint32_t>(block.index.size()));
+    }
+    return light;
+}
+
+// Sixteen walks, bands that fly apart, and sites on the surface or inside: what leaves, what
+// crosses and what is absorbed add up to 1 at every site, so that nothing is won where nothing is
+// absorbed.
+TEST(SiteRows, OfEverySiteAndBandAddUpToAllLightLessWhatIsAbsorbed) {
+    for (const float sigma_a : {0.0f, 3.0f}) {
+        WalkedBall ball = make_ball(20, 1);
+        ball.body->scene.materials[0].medium =
+            make_coloured_medium({20, 40, 90}, {sigma_a, sigma_a, 0});
+        ball.body->space = bake::make_walk_space(ball.body->scene, *ball.body->triangles, 0, false);
+        ASSERT_EQ(ball.body->space.bands.size(), 3u);
+        const bake::SparseVectors unit = make_unit_light(ball);
+        const bake::ExitLight light(ball.samples, unit, std::nullopt, ball.escape);
+        for (const bool inside : {false, true}) {
+            const auto sites = bake::place_sites(ball.body->space, {200, 0.4, false}, 0, {});
+            bake::WalkStageOptions options = rows_within(0.4, 200.0 * 3 * 16, 1);
+            options.is_inside = inside;
+            options.rows.bands = 3;
+            options.rows.orders.fills_crossed = true;
+            const bake::WalkStage stage =
+                bake::take_walks(ball.body->space, light, sites, options, {}, {});
+            std::array<double, 3> mean{};
+            for (std::size_t site = 0; site < sites.size(); ++site) {
+                std::vector<float> row(4 * kAll);
+                bake::add_site_row(stage.rows, site, 0, glm::vec3(1), row);
+                for (std::size_t b = 0; b < 3; ++b) {
+                    mean[b] += static_cast<double>(row[b]) / static_cast<double>(sites.size());
+                    if (sigma_a == 0 || b == 2) {
+                        EXPECT_NEAR(row[b], 1, 1e-5f) << inside << " " << site << " " << b;
+                    } else {
+                        EXPECT_LT(row[b], 1) << inside << " " << site << " " << b;
+                    }
+                }
+            }
+            for (std::size_t b = 0; b < 3; ++b) {
+                const double left = stage.counts.ends.left[b] / stage.counts.ends.finished(b);
+                EXPECT_NEAR(mean[b] / left, 1, 0.02) << inside << " " << b;
+            }
+        }
+    }
+}
+
 // Walks begin where some receiver reads their row; the rows of receivers are the same, bit by bit.
 TEST(SiteRows, SitesThatNoReceiverReadsTakeNoWalks) {
     const WalkedBall ball = make_ball(20, 0.9f);

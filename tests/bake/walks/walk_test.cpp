@@ -43,6 +43,47 @@ LinearFit fit_half_space(double albedo) {
     return fit;
 }
 
+// Whatever the body, its parts and its holes: no weight is dropped without a count.
+TEST(Walk, LightLeavesMeetsASurfaceIsAbsorbedOrIsLostAndInNoOtherWay) {
+    const auto expect_all = [](const WalkedBody& body, const bake::WalkStart& start,
+                               const char* what) {
+        constexpr std::uint32_t kWalks = 20000;
+        const auto counts = visit_walks(body.space, start, {2}, kWalks, [](const auto&) {});
+        const auto all = static_cast<double>(counts.walks);
+        for (std::size_t b = 0; b < 3; ++b) {
+            if (body.space.is_grey && b > 0) continue;
+            const double scattered = counts.ends.all(b), straight = counts.straight.all(b);
+            EXPECT_NEAR((scattered + straight) / all, 1, 0.02) << what;
+            EXPECT_NEAR(scattered / counts.scattered[b], 1, 0.02) << what;
+            EXPECT_NEAR((counts.scattered[b] + straight) / all, 1, 0.02) << what;
+        }
+        return counts;
+    };
+    const bake::WalkStart top = start_below({0, 0, 0}, {0, 1, 0});
+    const bake::WalkStart pole = start_below({0, 0.995f, 0}, {0, 1, 0});
+    const auto slab =
+        expect_all(*make_walked_body(make_wide_slab(2), make_forward_medium(1, 0.7f, 0.3f, 1.4f)),
+                   top, "slab");
+    EXPECT_GT(slab.straight.left[0], 0.02 * 20000) << "crosses it unscattered";
+    EXPECT_GT(slab.ends.absorbed[0], 0.2 * 20000);
+    const auto coloured = expect_all(
+        *make_walked_body(make_sphere(3), make_coloured_medium({4, 8, 20}, {2, 0, 1}), false), pole,
+        "coloured ball");
+    EXPECT_EQ(coloured.ends.absorbed[1], 0) << "a band of albedo 1";
+    EXPECT_EQ(coloured.ends.met[0], 0);
+    const auto hole = expect_all(
+        *make_walked_body(make_open_ball(), make_forward_medium(2, 0.9f, 0, 1.3f)), pole, "hole");
+    EXPECT_GT(hole.ends.unfinished[0], 100);
+    EXPECT_GT(hole.straight.unfinished[0], 0);
+    Primitive core = make_sphere(3, 0.6f);
+    core.material = 1;
+    const auto opaque = expect_all(*make_walked_scene(make_translucent_scene(
+                                       {make_sphere(3), core}, make_forward_medium(3, 1, 0, 1.3f))),
+                                   pole, "opaque core");
+    EXPECT_GT(opaque.ends.met[0], 0.05 * 20000);
+    EXPECT_GT(opaque.straight.met[0], 0.05 * 20000) << "met before any scattering";
+}
+
 // Of albedo 1 all that scatters leaves: what crosses, e^-2, is made up for.
 TEST(Walk, WalksThatScatterStandForThoseThatCross) {
     const auto slab = make_walked_body(make_wide_slab(2), make_forward_medium(1, 1, 0, 1));

@@ -66,6 +66,22 @@ double BandWeights::left() const {
     return static_cast<double>(all_walks_) * sum / std::max(1.0, bands);
 }
 
+std::array<double, 3> BandWeights::take_absorbed() {
+    std::array<double, 3> taken{};
+    for (std::size_t b = 0; b < 3; ++b) {
+        taken[b] = static_cast<double>(all_walks_) * static_cast<double>(absorbed_[b]);
+    }
+    absorbed_ = {};
+    return taken;
+}
+
+// Of a band the share `kept` goes on, and the rest is absorbed.
+void BandWeights::lose(std::size_t band, float kept) {
+    absorbed_[band] += (1 - kept) * value_[band];
+    value_[band] *= kept;
+    own_[band] *= kept;
+}
+
 // The density of a flight in each group over its density in the group that drew it, times `scale`.
 BandWeights::PerGroup BandWeights::flight_factors(float length, bool collides, float scale) const {
     const float log_scale = scale == 1 ? 0 : std::log(scale);
@@ -121,9 +137,7 @@ bool BandWeights::cross_ball(float length, float scatterings) {
     }
     for (std::size_t b = 0; b < 3; ++b) {
         if (own_[b] > 0) {
-            const float left = std::pow(medium_->albedo[b], scatterings);
-            value_[b] *= left;
-            own_[b] *= left;
+            lose(b, std::pow(medium_->albedo[b], scatterings));
         }
     }
     return medium_->absorbs_in_flight ? absorb_in_flight(length) : left() > 0;
@@ -132,9 +146,7 @@ bool BandWeights::cross_ball(float length, float scatterings) {
 // Bands that are not scattered here.
 bool BandWeights::absorb_in_flight(float length) {
     for (std::size_t b = 0; b < 3; ++b) {
-        const float passed = std::exp(-medium_->absorption[b] * length);
-        value_[b] *= passed;
-        own_[b] *= passed;
+        lose(b, std::exp(-medium_->absorption[b] * length));
     }
     return left() > 0;
 }
@@ -179,8 +191,7 @@ bool BandWeights::begin(const PerGroup& light, const PerGroup& density) {
 
 bool BandWeights::absorb(const std::array<float, 3>& albedo) {
     for (std::size_t b = 0; b < 3; ++b) {
-        value_[b] *= albedo[b];
-        own_[b] *= albedo[b];
+        lose(b, albedo[b]);
     }
     return left() > 0;
 }

@@ -33,6 +33,9 @@ class BandWeights {
         return static_cast<double>(all_walks_) * static_cast<double>(value_[band]);
     }
 
+    /// What absorption has taken since the last call, in the unit of `left`, band by band.
+    std::array<double, 3> take_absorbed();
+
     /// The walk goes on in another of the space's media. It starts in the first.
     void enter(std::uint8_t medium);
 
@@ -69,6 +72,7 @@ class BandWeights {
     float survival_chance(std::size_t group) const;
     bool reweigh(const PerGroup& light, const PerGroup& density);
     bool absorb_in_flight(float length);
+    void lose(std::size_t band, float kept);
 
     const WalkSpace& space_;
     const WalkMedium* medium_;  // around the walk
@@ -77,7 +81,7 @@ class BandWeights {
     PerGroup log_ratio_{};                // of the groups' extinction to that of the flights
     std::array<std::size_t, 3> group_{};  // of each band
     std::array<bool, 3> has_light_{};     // each band
-    std::array<float, 3> value_{};
+    std::array<float, 3> value_{}, absorbed_{};
     PerGroup density_{};  // of the walk so far, times the group's walks; their sum is 1
     /// What walks of a band's own group would weigh that had come this way, and without absorption.
     std::array<float, 3> own_{};

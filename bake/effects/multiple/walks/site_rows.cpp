@@ -54,21 +54,18 @@ class SiteWalker {
                 }
             }
         }
-        if (options_.orders.fills_crossed) {
-            fill_crossed(own);
-        }
-        add_exits(static_cast<float>(own.correction() / options_.walks_per_site));
+        scale_exits(own);
+        add_exits(1 / static_cast<float>(options_.walks_per_site));
         take_out_mean(mean_seen, static_cast<float>(number));
         counts += own;
         return dense_;
     }
 
   private:
-    void fill_crossed(const WalkCounts& counts) {
+    // What leaves and what does not add up, band by band, however few the walks.
+    void scale_exits(const WalkCounts& counts) {
         for (std::size_t b = 0; b < 3; ++b) {
-            std::array<double, 3> share{};
-            share[b] = 1;
-            const auto factor = static_cast<float>(counts.crossed_correction(share));
+            const auto factor = static_cast<float>(counts.scale(b, options_.orders.fills_crossed));
             for (WalkExit& exit : exits_) {
                 exit.weight[b] *= factor;
             }

@@ -63,6 +63,13 @@ class Walk {
 
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
+        const glm::vec3 seen = follow_from(start);
+        count_absorbed();
+        return seen;
+    }
+
+  private:
+    glm::vec3 follow_from(const WalkStart& start) {
         position_ = start_ = start.position;
         vertex_ = start.vertex;
         free_.set(position_, 0, start.depth);
@@ -82,7 +89,6 @@ class Walk {
         return seen;
     }
 
-  private:
     void go_on(std::uint32_t event) {
         for (; event < space_.most_events; ++event) {
             ++counts_.events;
@@ -127,10 +133,9 @@ class Walk {
         position_ += jump.way / sigma_t;
         direction_ = jump.direction;
         length_ += jump.length / sigma_t;
-        if (scatterings_ == 0 && jump.scatterings > 0) {
-            add_left(1, counts_.scattered);
+        if (jump.scatterings > 0) {
+            count_scatterings(static_cast<std::uint32_t>(jump.scatterings));
         }
-        scatterings_ += static_cast<std::uint32_t>(jump.scatterings);
         return weight_.cross_ball(jump.length / sigma_t, jump.scatterings) && survives();
     }
 
@@ -139,9 +144,21 @@ class Walk {
         return weight_.sigma_t() > 0 ? depth / weight_.sigma_t() : kForever;
     }
 
-    void count_scattering() {
-        if (scatterings_++ == 0) {
+    void count_scatterings(std::uint32_t count) {
+        if (scatterings_ == 0) {
+            count_absorbed();
             add_left(1, counts_.scattered);
+        }
+        scatterings_ += count;
+    }
+
+    // Of the light that the walk carries.
+    WalkEnds& ends() { return scatterings_ > 0 ? counts_.ends : counts_.straight; }
+
+    void count_absorbed() {
+        const std::array<double, 3> taken = weight_.take_absorbed();
+        for (std::size_t b = 0; b < 3; ++b) {
+            ends().absorbed[b] += taken[b];
         }
     }
 
@@ -154,7 +171,12 @@ class Walk {
 
     bool give_up(std::uint64_t& count) {
         ++count;
-        counts_.unfinished += weight_.left();
+        add_left(1, ends().unfinished);
+        return false;
+    }
+
+    bool meet() {
+        add_left(1, ends().met);
         return false;
     }
 
@@ -200,7 +222,7 @@ class Walk {
             return give_up(counts_.lost);
         }
         if (const auto& field = medium().field) return collide_in(*field);
-        count_scattering();
+        count_scatterings(1);
         turn();
         return weight_.absorb() && survives();
     }
@@ -210,7 +232,7 @@ class Walk {
     // cancels from their weights.
     bool collide_in(const MediumField& field) {
         if (field.has_density() && !(random_.next() < field.density(position_))) return true;
-        count_scattering();
+        count_scatterings(1);
         turn();
         const glm::vec3 albedo = field.albedo(position_);
         return weight_.absorb({albedo.x, albedo.y, albedo.z}) && survives();
@@ -229,7 +251,7 @@ class Walk {
     }
 
     bool arrive(const WalkHit& hit) {
-        if (hit.medium == kNoWalkMedium) return false;
+        if (hit.medium == kNoWalkMedium) return meet();
         length_ += glm::distance(hit.position, position_);
         free_.set(hit.position, 0, 0);
         const float side = glm::dot(direction_, hit.flat) > 0 ? 1.0f : -1.0f;
@@ -239,7 +261,7 @@ class Walk {
         } else if (!beyond.enter(hit.medium)) {
             return give_up(counts_.buried);
         }
-        if (beyond.empty()) return hit.is_own && arrive_at_boundary(hit);
+        if (beyond.empty()) return hit.is_own ? arrive_at_boundary(hit) : meet();
         return beyond.top() == bodies_.top() ? pass(hit, side, beyond)
                                              : change_medium(hit, side, beyond);
     }
@@ -303,8 +325,9 @@ class Walk {
         }
         if (scatterings_ == 0 &&
             (orders_.fills_crossed || (!is_reflected_ && is_around_vertex(space_, hit, vertex_)))) {
-            add_left(passed, counts_.crossed);
+            add_left(passed, counts_.filled);
         }
+        add_left(passed, ends().left);
         is_reflected_ = true;
         position_ = hit.position - 2 * hit.error * hit.flat;
         direction_ = glm::normalize(direction_ - 2 * glm::dot(direction_, normal) * normal);
@@ -351,6 +374,43 @@ class Walk {
 
 }  // namespace
 
+WalkEnds& WalkEnds::operator+=(const WalkEnds& other) {
+    for (std::size_t b = 0; b < 3; ++b) {
+        left[b] += other.left[b];
+        met[b] += other.met[b];
+        absorbed[b] += other.absorbed[b];
+        unfinished[b] += other.unfinished[b];
+    }
+    return *this;
+}
+
+double WalkCounts::unfinished() const {
+    double sum = 0;
+    int bands = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+        sum += ends.unfinished[b] + straight.unfinished[b];
+        bands += ends.all(b) + straight.all(b) > 0 ? 1 : 0;
+    }
+    return sum / std::max(1, bands);
+}
+
+double WalkCounts::scale(std::size_t band, bool fills_crossed) const {
+    const auto all = static_cast<double>(walks);
+    const double own = scattered[band];
+    const bool is_replaced = straight.unfinished[band] + ends.unfinished[band] < 0.5 * all;
+    const auto sum_of = [&](const WalkEnds& of) {
+        return is_replaced ? of.finished(band) : of.all(band);
+    };
+    const double ended = sum_of(ends), other = sum_of(straight);
+    if (!(ended > 0)) return 1;
+    double share = (own + (fills_crossed ? straight.left[band] : 0)) / (own + other);
+    if (own < other && !fills_crossed) {
+        // Of a thin body what scatters is known far better than what does not.
+        share = own / (is_replaced ? all - straight.unfinished[band] : all);
+    }
+    return all * share / ended;
+}
+
 WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     walks += other.walks;
     events += other.events;
@@ -360,10 +420,11 @@ WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     lost += other.lost;
     endless += other.endless;
     buried += other.buried;
-    unfinished += other.unfinished;
+    ends += other.ends;
+    straight += other.straight;
     for (std::size_t b = 0; b < 3; ++b) {
         scattered[b] += other.scattered[b];
-        crossed[b] += other.crossed[b];
+        filled[b] += other.filled[b];
     }
     return *this;
 }
