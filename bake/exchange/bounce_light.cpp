@@ -75,10 +75,13 @@ void weigh_through(const Field& field, const BounceTree& tree, const LookThrough
                    std::uint64_t& rays) {
     const Scatterer& s = field.scatterers[i];
     const CrossingViews crossing = look(s.inside, rays);
+    const std::vector<float> of_sky = field.light.crossing.row(i);
     double sum = 0;
     std::array<double, 3> by_band{}, all{};
-    for (const SurfaceView& view : crossing.views) {
-        for (std::size_t b = 0; b < all.size(); ++b) {
+    for (std::size_t b = 0; b < all.size(); ++b) {
+        all[b] = double{even_share(
+            std::span(of_sky).subspan(b < field.light.bands ? b * kTexels : 0, kTexels))};
+        for (const SurfaceView& view : crossing.views) {
             all[b] += double{view.weight[b]};
         }
     }
@@ -102,21 +105,21 @@ void weigh_through(const Field& field, const BounceTree& tree, const LookThrough
     const formats::Medium& medium = *field.inputs.bake.scene.materials[s.material].medium;
     const BandColour share = share_of_crossing(medium, scattered, all);
     const std::array<float, 3> albedo{s.albedo.diffuse.r, s.albedo.diffuse.g, s.albedo.diffuse.b};
-    BandColour of_sky{};
+    BandColour sky_share{};
     for (std::size_t b = 0; b < by_band.size(); ++b) {
         arrivals.of_through[b] =
             sum > 0 ? albedo[b] * share[b] * static_cast<float>(by_band[b] / sum) : 0;
-        of_sky[b] = albedo[b] * share[b];
+        sky_share[b] = albedo[b] * share[b];
     }
     if (field.light.bands == 1) {
         const auto grey = [](const BandColour& c) {
             return BandColour{formats::luminance({c[0], c[1], c[2]})};
         };
         arrivals.of_through = grey(arrivals.of_through);
-        of_sky = grey(of_sky);
+        sky_share = grey(sky_share);
     }
     std::vector<float> to = field.light.emitted.row(i);
-    add_scaled(field.light.crossing.row(i), of_sky, to);
+    add_scaled(of_sky, sky_share, to);
     field.light.emitted.set(i, to);
 }
 

@@ -34,7 +34,6 @@ std::vector<float> make_even_sky() {
 struct LitScatterers {
     const LightInputs& inputs;
     std::span<Scatterer> scatterers;
-    std::vector<float> even_sky;  // a light of radiance 1, in the basis of rows
     ScattererLight light;
 
     const formats::Material& material(std::size_t i) const {
@@ -60,9 +59,8 @@ void add_scaled(std::span<const float> from, const BandColour& factor, std::uint
 }
 
 // Of E.
-float openness_of(const LitScatterers& field, std::span<const float> row) {
-    return std::clamp(static_cast<float>(relit(row, field.even_sky)) / std::numbers::pi_v<float>,
-                      0.0f, 1.0f);
+float openness_of(std::span<const float> row) {
+    return std::clamp(even_share(row), 0.0f, 1.0f);
 }
 
 // B of an opaque or thin-walled surface: rho E. What a lobe mirrors crosses no thin wall.
@@ -77,11 +75,11 @@ std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions
     field.light.reflect[i] = to_bands(reflect, field.light.bands);
     field.light.transmit[i] = to_bands(transmit, field.light.bands);
     std::uint64_t rays = gather_row(field, directions, s.outside, row);
-    s.openness = openness_of(field, row);
+    s.openness = openness_of(row);
     add_scaled(row, field.light.reflect[i], field.light.bands, emitted);
     if (field.material(i).sheet) {
         rays += gather_row(field, directions, s.beyond, row);
-        field.light.open_beyond[i] = openness_of(field, row);
+        field.light.open_beyond[i] = openness_of(row);
         add_scaled(row, field.light.transmit[i], field.light.bands, emitted);
     }
     field.light.emitted.set(i, emitted);
@@ -118,7 +116,7 @@ std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
                 Scatterer& s = field.scatterers[members[m]];
                 std::ranges::fill(row, 0.0f);
                 traced += gather_row(field, directions, s.outside, row);
-                s.openness = openness_of(field, row);
+                s.openness = openness_of(row);
                 planes.clear();
                 for (std::uint32_t b = 0; b < bands; ++b) {
                     planes.insert(planes.end(), row.begin(), row.end());
@@ -203,12 +201,16 @@ std::uint64_t light_all(LitScatterers& field) {
 
 }  // namespace
 
+float even_share(std::span<const float> plane) {
+    static const std::vector<float> even_sky = make_even_sky();
+    return static_cast<float>(relit(plane, even_sky)) / std::numbers::pi_v<float>;
+}
+
 ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
                                 std::uint32_t bands, std::uint64_t& rays) {
     const std::size_t count = scatterers.size();
     LitScatterers field{inputs,
                         scatterers,
-                        make_even_sky(),
                         {bands,
                          CodedRows(count, bands * kRowTexels),
                          std::vector<BandColour>(count),

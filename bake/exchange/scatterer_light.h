@@ -26,6 +26,10 @@ struct ScattererLight {
     std::size_t row_size() const { return emitted.size(); }
 };
 
+/// What an even sky makes of a plane of rows of flux (E or B), over that where all of the sky is
+/// seen.
+float even_share(std::span<const float> plane);
+
 /// Traces rays to the environment; sets Scatterer::openness. Counts `rays`.
 ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
                                 std::uint32_t bands, std::uint64_t& rays);
