@@ -173,15 +173,23 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
 }
 
 // The bounces after a last one, by which rows changed.
-void add_rest(const SeriesEnd& series, const CodedRows& before, CodedRows& rows) {
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-        const std::vector<float> from = before.row(i);
-        std::vector<float> to = rows.row(i);
-        for (std::size_t k = 0; k < to.size(); ++k) {
-            to[k] += static_cast<float>(series.multiple(k / kTexels)) * (to[k] - from[k]);
-        }
-        rows.set(i, to);
-    }
+void add_rest(const SeriesEnd& series, const CodedRows& before, const Context& context,
+              CodedRows& rows) {
+    constexpr std::size_t kBlock = 64;
+    for_each_block_in_order(
+        rows.count(), kBlock, context,
+        [&](Range range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                std::vector<float> to = rows.row(i);
+                const std::vector<float> from = before.row(i);
+                for (std::size_t k = 0; k < to.size(); ++k) {
+                    to[k] += static_cast<float>(series.rest(k / kTexels)) * (to[k] - from[k]);
+                }
+                rows.set(i, to);
+            }
+            return 0;
+        },
+        [](Range, int) {});
 }
 
 // Of all rows under an even sky, by band.
@@ -213,8 +221,8 @@ SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, 
         report.remaining = series.remaining();
         report.ratio = series.largest_ratio();
         is_last = series.is_settled(kLeastShare) || report.bounces + 1 == kMostBounces;
-        tree.set_rows(leaving, field.inputs.context);
         const CodedRows before = is_last ? leaving : CodedRows();
+        tree.set_rows(leaving, field.inputs.context);
         constexpr std::size_t kBlock = 64;
         for_each_block_in_order(
             arrivals.size(), kBlock, field.inputs.context,
@@ -249,7 +257,7 @@ SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, 
                        leaving);
         }
         if (is_last) {
-            add_rest(series, before, leaving);
+            add_rest(series, before, field.inputs.context, leaving);
         }
         series.add(sums_of_even(leaving));
     }
