@@ -337,17 +337,16 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
             const float t = hits.distance[i];
             const float area =
                 static_cast<float>(solid_angle) * t * t / std::max(side.cosine, kGrazing);
+            const glm::vec3 y = some[i].origin + t * some[i].direction;
+            const auto view = static_cast<std::uint32_t>(begin + i);
+            const MirroredRay ray = mirror(
+                scene, {y, some[i].direction, hits.error[i], hits.material[i], side}, 1, view);
             const std::uint32_t node =
-                tree.find(some[i].origin + t * some[i].direction,
-                          {hits.material[i], side.behind, side.normal}, area);
+                tree.find(y, {hits.material[i], side.behind, side.normal}, area);
             if (node != formats::kNone) {
-                seen.push_back({node, static_cast<std::uint32_t>(begin + i), 1});
+                seen.push_back(
+                    {node, view, share_of_radiosity(scene.materials[hits.material[i]], ray.share)});
             }
-            const MirroredRay ray =
-                mirror(scene,
-                       {some[i].origin + t * some[i].direction, some[i].direction, hits.error[i],
-                        hits.material[i], side},
-                       1, static_cast<std::uint32_t>(begin + i));
             if (ray.share > 0) {
                 mirrored.push_back(ray);
             }
