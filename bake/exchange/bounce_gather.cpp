@@ -112,11 +112,21 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
     std::vector<BounceEnd> ends;
     BounceGather gathered;
     gathered.rays = find_bounce_ends(scene, rays, at, grid, seed, ends);
+    const auto share_of = [&](const BounceEnd& end) {
+        return 1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
+    };
     MirroredCells mirrored(scene, rays, at, frame, grid, seed);
-    for (const BounceEnd& end : ends) {
+    std::vector<std::uint32_t> mirroring(ends.size(), formats::kNone);  // of each end, its number
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        if (ends[i].sends()) {
+            mirroring[i] = mirrored.add(ends[i], share_of(ends[i]));
+        }
+    }
+    gathered.rays += mirrored.follow(tree, weights);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const BounceEnd& end = ends[i];
         if (!end.is_met) continue;
-        const float share =
-            1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
+        float share = share_of(end);
         const float near = 1 / std::max(end.distance, kNoDistance);
         gathered.nearness += share * near * near;
         gathered.met += share;
@@ -124,7 +134,8 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
         const BounceCell& cell = (end.is_quarter ? grid.quarters : grid.cells)[end.cell];
         const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
         const FootprintKernel kernel = footprint_of(at.origin, end, cell, frame);
-        mirrored.add(end, share);
+        const float part = mirroring[i] == formats::kNone ? 0 : mirrored.mirrored(mirroring[i]);
+        share *= share_of_radiosity(scene.materials[end.material], part / share);
         const glm::vec3 y = at.origin + end.distance * end.direction;
         const std::uint32_t node = tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
         if (node == formats::kNone ||
@@ -134,7 +145,6 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
         }
         weights.push_back({node, share});
     }
-    gathered.rays += mirrored.follow(tree, weights);
     std::ranges::sort(weights, {}, &NodeWeight::node);
     std::size_t kept = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {

@@ -43,7 +43,8 @@ FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const Bounc
 ///     E = 1/N sum over N cells of cosine-distributed rays of B over the footprint of each.
 /// The ray decides whether a surface is seen and which; the mean of B over its cell has no noise of
 /// where in the cell it went. Rays that end on media go on as their boundaries mirror them, and
-/// read the scatterer or the texel of the sky where they end. Overwrites `weights`.
+/// read the scatterer or the texel of the sky where they end; the rest of their light is the
+/// medium's (share_of_radiosity). Overwrites `weights`.
 BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
                            const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
                            std::uint64_t seed, std::vector<NodeWeight>& weights,

@@ -176,15 +176,23 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
 }
 
 // The bounces after a last one, by which rows changed.
-void add_rest(const SeriesEnd& series, const CodedRows& before, CodedRows& rows) {
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-        const std::vector<float> from = before.row(i);
-        std::vector<float> to = rows.row(i);
-        for (std::size_t k = 0; k < to.size(); ++k) {
-            to[k] += static_cast<float>(series.multiple(k / kTexels)) * (to[k] - from[k]);
-        }
-        rows.set(i, to);
-    }
+void add_rest(const SeriesEnd& series, const CodedRows& before, const Context& context,
+              CodedRows& rows) {
+    constexpr std::size_t kBlock = 64;
+    for_each_block_in_order(
+        rows.count(), kBlock, context,
+        [&](Range range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                std::vector<float> to = rows.row(i);
+                const std::vector<float> from = before.row(i);
+                for (std::size_t k = 0; k < to.size(); ++k) {
+                    to[k] += static_cast<float>(series.rest(k / kTexels)) * (to[k] - from[k]);
+                }
+                rows.set(i, to);
+            }
+            return 0;
+        },
+        [](Range, int) {});
 }
 
 // Of all rows under an even sky, by band.
@@ -216,8 +224,8 @@ SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, 
         report.remaining = series.remaining();
         report.ratio = series.largest_ratio();
         is_last = series.is_settled(kLeastShare) || report.bounces + 1 == kMostBounces;
-        tree.set_rows(leaving, field.inputs.context);
         const CodedRows before = is_last ? leaving : CodedRows();
+        tree.set_rows(leaving, field.inputs.context);
         constexpr std::size_t kBlock = 64;
         for_each_block_in_order(
             arrivals.size(), kBlock, field.inputs.context,
@@ -252,7 +260,7 @@ SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, 
                        leaving);
         }
         if (is_last) {
-            add_rest(series, before, leaving);
+            add_rest(series, before, field.inputs.context, leaving);
         }
         series.add(sums_of_even(leaving));
     }
@@ -332,17 +340,16 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
             const float t = hits.distance[i];
             const float area =
                 static_cast<float>(solid_angle) * t * t / std::max(side.cosine, kGrazing);
+            const glm::vec3 y = some[i].origin + t * some[i].direction;
+            const auto view = static_cast<std::uint32_t>(begin + i);
+            const MirroredRay ray = mirror(
+                scene, {y, some[i].direction, hits.error[i], hits.material[i], side}, 1, view);
             const std::uint32_t node =
-                tree.find(some[i].origin + t * some[i].direction,
-                          {hits.material[i], side.behind, side.normal}, area);
+                tree.find(y, {hits.material[i], side.behind, side.normal}, area);
             if (node != formats::kNone) {
-                seen.push_back({node, static_cast<std::uint32_t>(begin + i), 1});
+                seen.push_back(
+                    {node, view, share_of_radiosity(scene.materials[hits.material[i]], ray.share)});
             }
-            const MirroredRay ray =
-                mirror(scene,
-                       {some[i].origin + t * some[i].direction, some[i].direction, hits.error[i],
-                        hits.material[i], side},
-                       1, static_cast<std::uint32_t>(begin + i));
             if (ray.share > 0) {
                 mirrored.push_back(ray);
             }

@@ -46,6 +46,23 @@ LobeSample sample_lobe(const formats::Medium& medium, const glm::dvec3& to_eye, 
                         fresnel_reflectance(cosine, static_cast<double>(medium.eta))};
 }
 
+// F_ext: what a boundary mirrors of even light from outside, twice the integral of F(c) c dc
+// [Walsh1926], and by reciprocity below index 1.
+double diffuse_reflectance(double eta) {
+    constexpr double kMatched = 1e-5;
+    if (std::abs(eta - 1) < kMatched) return 0;
+    if (eta < 1) return 1 - (1 - diffuse_reflectance(1 / eta)) * eta * eta;
+    const double n = eta, n2 = n * n, n4 = n2 * n2, above = n2 + 1, across = n4 - 1;
+    return 0.5 + (n - 1) * (3 * n + 1) / (6 * (n + 1) * (n + 1)) +
+           n2 * (n2 - 1) * (n2 - 1) / (above * above * above) * std::log((n - 1) / (n + 1)) -
+           2 * n * n2 * (n2 + 2 * n - 1) / (above * across) +
+           8 * n4 * (n4 + 1) / (above * across * across) * std::log(n);
+}
+
+bool is_boundary(const formats::Material& material) {
+    return material.medium && !material.sheet;
+}
+
 }  // namespace
 
 BounceGrid make_bounce_grid(std::uint32_t count) {
@@ -82,7 +99,7 @@ MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
                    std::uint32_t number) {
     constexpr float kGrazing = 1e-3f;
     const formats::Material& material = scene.materials[end.material];
-    if (!material.medium || material.sheet || !end.side.is_seen) {
+    if (!is_boundary(material) || !end.side.is_seen) {
         return {};
     }
     const glm::vec3 normal = end.side.normal;
@@ -98,6 +115,12 @@ MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
             .number = number};
 }
 
+float share_of_radiosity(const formats::Material& material, float mirrored) {
+    if (!is_boundary(material)) return 1;
+    const double entering = 1 - diffuse_reflectance(static_cast<double>(material.medium->eta));
+    return static_cast<float>((1 - static_cast<double>(mirrored)) / entering);
+}
+
 std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                               const BounceTree& tree, std::vector<MirroredRay> open,
                               std::vector<MirroredNode>& found) {
@@ -105,9 +128,9 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
     // grazing angles.
     constexpr int kMostMirrors = 4;
     constexpr std::size_t kLanes = RayPacket::kSize;
-    const auto add = [&](std::uint32_t node, const MirroredRay& ray) {
+    const auto add = [&](std::uint32_t node, const MirroredRay& ray, float share) {
         if (node != formats::kNone) {
-            found.push_back({node, ray.share, ray.number});
+            found.push_back({node, share * ray.share, ray.number});
         }
     };
     std::uint64_t traced = 0;
@@ -121,7 +144,7 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
             for (std::size_t i = 0; i < some.size(); ++i) {
                 const MirroredRay& ray = some[i];
                 if (hits.hit[i] == 0) {
-                    add(tree.sky_node(ray.direction), ray);
+                    add(tree.sky_node(ray.direction), ray, 1);
                     continue;
                 }
                 const RayEnd end{.position = ray.origin + hits.distance[i] * ray.direction,
@@ -130,9 +153,11 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                                  .material = hits.material[i],
                                  .side = side_of_hit(scene, hits, i)};
                 if (!end.side.is_seen) continue;
+                const MirroredRay on = mirrors + 1 < kMostMirrors
+                                           ? mirror(scene, end, ray.share, ray.number)
+                                           : MirroredRay{};
                 add(tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0),
-                    ray);
-                const MirroredRay on = mirror(scene, end, ray.share, ray.number);
+                    ray, share_of_radiosity(scene.materials[end.material], on.share / ray.share));
                 if (on.share > 0) {
                     next.push_back(on);
                 }

@@ -43,6 +43,11 @@ struct MirroredRay {
 MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
                    std::uint32_t number);
 
+/// The factor by which what a ray meets counts in it with its radiosity: 1 of surfaces. A medium
+/// keeps back what its boundary mirrors of the ray, where it sends 1 - F_ext of even light on
+/// average: of that its factor and `mirrored` make 1.
+float share_of_radiosity(const formats::Material& material, float mirrored);
+
 /// The node that answers a mirrored ray: of a surface, or of the sky.
 struct MirroredNode {
     std::uint32_t node = 0;
@@ -50,8 +55,8 @@ struct MirroredNode {
     std::uint32_t number = 0;
 };
 
-/// Follows mirrored rays from medium to medium until they carry little light, and appends their
-/// hits to `found`. Returns the rays traced.
+/// Follows mirrored rays from medium to medium, a few times, and appends their hits to `found`. The
+/// last medium mirrors nothing. Returns the rays traced.
 std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                               const BounceTree& tree, std::vector<MirroredRay> open,
                               std::vector<MirroredNode>& found);

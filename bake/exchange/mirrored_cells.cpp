@@ -31,22 +31,27 @@ MirroredCells::MirroredCells(const formats::Scene& scene, const RayScene& rays, 
       key_(key_of(at)),
       parts_(count_parts(grid.count())) {}
 
-void MirroredCells::add(const BounceEnd& end, float share) {
+std::uint32_t MirroredCells::add(const BounceEnd& end, float share) {
     const glm::vec3 y = at_.origin + end.distance * end.direction;
     const MirroredRay own =
         mirror(scene_, {y, end.direction, end.error, end.material, end.side}, share, 0);
-    if (!(own.share > 0)) return;
+    if (!(own.share > 0)) return formats::kNone;
     const std::size_t first = open_.size();
     open_.push_back(own);
     if (parts_ > 1 && !end.is_quarter) {
         add_parts(end, share);
     }
     const float each = 1 / static_cast<float>(open_.size() - first);
+    const auto cell = static_cast<std::uint32_t>(mirrored_.size());
+    mirrored_.push_back(0);
     for (std::size_t i = first; i < open_.size(); ++i) {
         open_[i].share *= each;
         open_[i].number = static_cast<std::uint32_t>(i);
         of_hemisphere_.push_back(each * share);
+        cell_.push_back(cell);
+        mirrored_[cell] += open_[i].share;
     }
+    return cell;
 }
 
 // One ray in each part but that of the cell's own ray.
@@ -98,7 +103,11 @@ std::uint64_t MirroredCells::follow(const BounceTree& tree, std::vector<NodeWeig
         }
         const float most =
             std::numbers::inv_pi_v<float> * tree.solid_angle_of_sky(found[begin].node);
-        weights.push_back({found[begin].node, share * std::min(1.0f, most / hemisphere)});
+        const float kept = std::min(1.0f, most / hemisphere);
+        weights.push_back({found[begin].node, share * kept});
+        for (std::size_t i = begin; i < end; ++i) {
+            mirrored_[cell_[found[i].number]] -= (1 - kept) * found[i].share;
+        }
     }
     return traced_;
 }

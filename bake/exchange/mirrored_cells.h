@@ -25,17 +25,20 @@ class MirroredCells {
     MirroredCells(const formats::Scene& scene, const RayScene& rays, const Receiver& at,
                   const Frame& frame, const BounceGrid& grid, std::uint64_t seed);
 
-    /// Adds the cell, with `share` of the point's irradiance, of an end that is met and seen; one
-    /// that no medium mirrors adds nothing.
-    void add(const BounceEnd& end, float share);
+    /// Adds the cell, with `share` of the point's irradiance, of an end that is met and seen.
+    /// Returns its number; formats::kNone of one that no medium mirrors.
+    std::uint32_t add(const BounceEnd& end, float share);
 
     /// Appends what the cells mirror, and returns the rays that were traced.
     ///
     /// From no texel of the sky comes more than a flat mirror shows: the share of the hemisphere
     /// in which the texel is mirrored is at most its solid angle over pi, and the texel's weight is
-    /// scaled by what exceeds that. This bounds what one path can do. It loses light where
-    /// boundaries focus it; the truth of a self-check keeps that light.
+    /// scaled by what exceeds that. This bounds what one path can do. Where boundaries focus light,
+    /// less than that is mirrored; the truth of a self-check keeps that light.
     std::uint64_t follow(const BounceTree& tree, std::vector<NodeWeight>& weights);
+
+    /// Share of the point's irradiance that a cell mirrors; known after `follow`.
+    float mirrored(std::uint32_t cell) const { return mirrored_[cell]; }
 
   private:
     void add_parts(const BounceEnd& end, float share);
@@ -49,6 +52,8 @@ class MirroredCells {
     std::uint32_t parts_ = 1;           // in the width of a cell: 1, 2 or 4
     std::vector<MirroredRay> open_;     // each numbered by its place here
     std::vector<float> of_hemisphere_;  // that each stands for
+    std::vector<std::uint32_t> cell_;   // of each
+    std::vector<float> mirrored_;       // by cell
 };
 
 }  // namespace opaline::bake

@@ -215,9 +215,9 @@ ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> 
                          CodedRows(count, bands * kRowTexels),
                          std::vector<BandColour>(count),
                          std::vector<BandColour>(count),
+                         std::vector<float>(count),
                          {},
-                         CodedRows(0, bands * kRowTexels),
-                         std::vector<float>(count)}};
+                         CodedRows(0, bands * kRowTexels)}};
     rays += light_all(field);
     return std::move(field.light);
 }

@@ -17,11 +17,11 @@ struct ScattererLight {
     std::uint32_t bands = 3;                    ///< or 1
     CodedRows emitted;                          ///< B without bounces, band by band, Haar
     std::vector<BandColour> reflect, transmit;  ///< of bounced light, on its side and through it
-    std::vector<MediumAnswer> answers;          ///< of media, which reflect as these say
+    std::vector<float> open_beyond;     ///< Scatterer::openness of the other side; of thin walls
+    std::vector<MediumAnswer> answers;  ///< of media, which reflect as these say
     /// B of light of the sky that crosses a medium straight, but for the base colour; of scatterers
     /// on media that let some cross, else 0. No part of `emitted`.
     CodedRows crossing;
-    std::vector<float> open_beyond;  ///< Scatterer::openness of the other side; of thin walls
 
     std::size_t row_size() const { return emitted.size(); }
 };

@@ -27,8 +27,8 @@ double SeriesEnd::remaining() const {
     for (std::size_t b = 0; b < all_.size(); ++b) {
         if (!(all_[b] > 0)) continue;
         if (count_ < 2) return 1;
-        const double next = ratio(b) * last_[b], rest = multiple(b) * next;
-        most = std::max(most, rest / (all_[b] + next + rest));
+        const double next = ratio(b) * last_[b], later = rest(b) * next;
+        most = std::max(most, later / (all_[b] + next + later));
     }
     return most;
 }

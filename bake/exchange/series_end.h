@@ -26,7 +26,7 @@ class SeriesEnd {
     /// `sums`: by band, of all light so far. First of what is emitted, then after each bounce.
     void add(std::span<const double> sums);
     /// What comes after a bounce, in its multiples.
-    double multiple(std::size_t band) const { return ratio(band) / (1 - ratio(band)); }
+    double rest(std::size_t band) const { return ratio(band) / (1 - ratio(band)); }
     double ratio(std::size_t band) const;
     double largest_ratio() const;
     /// Share of all light that comes after the next bounce; 1 where no bounce was added yet.

@@ -113,12 +113,12 @@ class TruePath {
             make_surface_point(light.scene, {hits.primitive[0], hits.first_index[0]},
                                {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
         if (is_medium) {
-            add_node(
-                light.tree.find(point.position, {hits.material[0], side.behind, side.normal}, 0),
-                weight);
             const MirroredRay ray =
                 mirror(light.scene,
                        {point.position, direction, hits.error[0], hits.material[0], side}, 1, 0);
+            add_node(
+                light.tree.find(point.position, {hits.material[0], side.behind, side.normal}, 0),
+                share_of_radiosity(material, ray.share) * weight);
             next = {ray.origin, ray.direction};
             weight = ray.share * weight;
             is_mirrored_ = ray.share > 0;

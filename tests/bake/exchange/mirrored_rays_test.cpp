@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bake/exchange/bounce_gather.h"
+#include "bake/exchange/scatterers.h"
 #include "bake/reference/rough_boundary.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
@@ -124,6 +125,51 @@ TEST(MirroredRays, ARoughWallMirrorsLessAtGrazingAnglesAndAroundTheMirrorsDirect
     const double smooth = BlackMedium({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80})})
                               .irradiance(floor, [](glm::vec3) { return true; });
     EXPECT_LT(from_above + from_below, 0.9 * smooth);
+}
+
+// Light of a point's rays that meet walls, over their share: what the walls send out of even light,
+// 1 - F_ext, and the sky in them. One point answers for a wall.
+double sum_of_shares(const BlackMedium& walls, const Receiver& at, std::uint32_t rays,
+                     bool is_closed) {
+    std::vector<Scatterer> scatterers;
+    for (int i = 0; i < 6; ++i) {
+        Scatterer s;
+        s.normal[i % 3] = i < 3 ? 1.0f : -1.0f;
+        s.position = -s.normal;
+        scatterers.push_back(s);
+    }
+    if (!is_closed) {
+        scatterers = {scatterers.front()};
+    }
+    const BounceTree tree(scatterers, 1, kTexels);
+    std::vector<NodeWeight> weights;
+    const BounceGather gathered =
+        weigh_bounces(walls.scene, walls.rays, tree, at, make_bounce_grid(rays), 1, weights);
+    const double left = 1 - fresnel_moments(double{walls.scene.materials[0].medium->eta}).external;
+    double sum = 0;
+    for (const NodeWeight& w : weights) {
+        sum += double{w.weight} * (w.node < tree.size() ? left : 1);
+    }
+    return sum / double{gathered.met};
+}
+
+// Also where a texel of the sky would be too bright for a mirror, and after the last of many
+// mirrors.
+TEST(MirroredRays, WhatAMediumMirrorsAndWhatItSendsAddUpToTheLightOfARay) {
+    for (const float eta : {1.1f, 1.5f, 2.5f, 0.8f}) {
+        for (const float roughness : {0.0f, 0.5f}) {
+            BlackMedium box({tests::make_cube(1, true)}, roughness);
+            BlackMedium wall({tests::make_quad({0, -40, -40}, {0, 80, 0}, {0, 0, 80})}, roughness);
+            box.scene.materials[0].medium->eta = wall.scene.materials[0].medium->eta = eta;
+            for (const std::uint32_t rays : {16u, 64u, 1024u}) {
+                EXPECT_NEAR(sum_of_shares(box, {{0.3f, -0.99f, 0.2f}, {0, 1, 0}}, rays, true), 1,
+                            1e-4)
+                    << eta << " " << roughness << " " << rays;
+                EXPECT_NEAR(sum_of_shares(wall, {{1e-3f, 0, 0}, {0, 1, 0}}, rays, false), 1, 1e-4)
+                    << eta << " " << roughness << " " << rays;
+            }
+        }
+    }
 }
 
 // In a corner a ray comes back the way it came, less by both reflectances.

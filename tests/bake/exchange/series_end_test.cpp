@@ -23,7 +23,7 @@ TEST(SeriesEnd, OfAGeometricSeriesIsKnownAfterTwoOfItsTerms) {
         series.add(sum);
         EXPECT_NEAR(series.ratio(0), q, 1e-12);
         // The next bounce is 2 q^2, and all light 2 / (1 - q).
-        EXPECT_NEAR(2 * q * q * (1 + series.multiple(0)), 2 * q * q / (1 - q), 1e-9);
+        EXPECT_NEAR(2 * q * q * (1 + series.rest(0)), 2 * q * q / (1 - q), 1e-9);
         EXPECT_NEAR(series.remaining(), q * q * q, 1e-12);
     }
 }
@@ -33,8 +33,8 @@ TEST(SeriesEnd, OfBandsIsThatOfTheBrightest) {
     series.add(std::array<double, 3>{1, 1, 0});
     series.add(std::array<double, 3>{1.5, 1.9, 0});
     EXPECT_NEAR(series.largest_ratio(), 0.9, 1e-12);
-    EXPECT_NEAR(series.multiple(0), 1, 1e-12);
-    EXPECT_EQ(series.multiple(2), 0);
+    EXPECT_NEAR(series.rest(0), 1, 1e-12);
+    EXPECT_EQ(series.rest(2), 0);
 }
 
 TEST(SeriesEnd, OfLightThatNeverFadesIsFinite) {

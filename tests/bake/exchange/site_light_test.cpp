@@ -11,7 +11,6 @@
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
-#include "tests/bake/exchange/bounce_support.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/bake/exchange/bounce_support.h"
