@@ -115,7 +115,10 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
     const auto share_of = [&](const BounceEnd& end) {
         return 1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
     };
-    MirroredCells mirrored(scene, rays, at, frame, grid, seed);
+    // What one scatterer errs by is averaged over again.
+    constexpr std::uint32_t kMirroredRays = 1024, kOfScatterers = 256;
+    MirroredCells mirrored(scene, rays, at, frame, grid, seed,
+                           look_up == LookUp::nearest ? kOfScatterers : kMirroredRays);
     std::vector<std::uint32_t> mirroring(ends.size(), formats::kNone);  // of each end, its number
     for (std::size_t i = 0; i < ends.size(); ++i) {
         if (ends[i].sends()) {

@@ -127,6 +127,7 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
     // Boundaries that face each other mirror a few hundredths of the arriving light, except at
     // grazing angles.
     constexpr int kMostMirrors = 4;
+    constexpr float kFaint = 1e-5f;  // of the first ray's light: what is left stays where it is
     constexpr std::size_t kLanes = RayPacket::kSize;
     const auto add = [&](std::uint32_t node, const MirroredRay& ray, float share) {
         if (node != formats::kNone) {
@@ -153,9 +154,9 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
                                  .material = hits.material[i],
                                  .side = side_of_hit(scene, hits, i)};
                 if (!end.side.is_seen) continue;
-                const MirroredRay on = mirrors + 1 < kMostMirrors
-                                           ? mirror(scene, end, ray.share, ray.number)
-                                           : MirroredRay{};
+                MirroredRay on;
+                if (mirrors + 1 < kMostMirrors) on = mirror(scene, end, ray.share, ray.number);
+                if (on.share < kFaint) on.share = 0;
                 add(tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0),
                     ray, share_of_radiosity(scene.materials[end.material], on.share / ray.share));
                 if (on.share > 0) {

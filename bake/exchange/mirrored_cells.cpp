@@ -11,17 +11,16 @@ namespace {
 
 // First of the random numbers of parts: those of cells and of quarters come before.
 constexpr std::uint32_t kOfParts = 3u << 30;
-// Rays that all cells of a point together would have, were all of them mirrored.
-constexpr std::uint32_t kMirroredRays = 1024;
 
-std::uint32_t count_parts(std::uint32_t cells) {
-    return cells * 16 <= kMirroredRays ? 4 : cells * 2 <= kMirroredRays ? 2 : 1;
+std::uint32_t count_parts(std::uint32_t cells, std::uint32_t most) {
+    return cells * 16 <= most ? 4 : cells * 2 <= most ? 2 : 1;
 }
 
 }  // namespace
 
 MirroredCells::MirroredCells(const formats::Scene& scene, const RayScene& rays, const Receiver& at,
-                             const Frame& frame, const BounceGrid& grid, std::uint64_t seed)
+                             const Frame& frame, const BounceGrid& grid, std::uint64_t seed,
+                             std::uint32_t most_rays)
     : scene_(scene),
       rays_(rays),
       at_(at),
@@ -29,7 +28,7 @@ MirroredCells::MirroredCells(const formats::Scene& scene, const RayScene& rays, 
       grid_(grid),
       seed_(seed),
       key_(key_of(at)),
-      parts_(count_parts(grid.count())) {}
+      parts_(count_parts(grid.count(), most_rays)) {}
 
 std::uint32_t MirroredCells::add(const BounceEnd& end, float share) {
     const glm::vec3 y = at_.origin + end.distance * end.direction;

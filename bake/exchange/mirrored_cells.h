@@ -21,9 +21,10 @@ namespace opaline::bake {
 /// the others, those that miss media do not count, and the mean of the rest takes the cell's share.
 class MirroredCells {
   public:
-    /// Keeps the references.
+    /// Keeps the references. `most_rays`: that all cells together have, were all of them mirrored.
     MirroredCells(const formats::Scene& scene, const RayScene& rays, const Receiver& at,
-                  const Frame& frame, const BounceGrid& grid, std::uint64_t seed);
+                  const Frame& frame, const BounceGrid& grid, std::uint64_t seed,
+                  std::uint32_t most_rays);
 
     /// Adds the cell, with `share` of the point's irradiance, of an end that is met and seen.
     /// Returns its number; formats::kNone of one that no medium mirrors.
