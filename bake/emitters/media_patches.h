@@ -12,11 +12,12 @@
 #include "bake/lamps/receiver_light.h"
 #include "bake/plan/row_layout.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/other_light.h"
 #include "formats/opal/asset.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+struct OtherLight;  // exchange/other_light.h
 
 /// What a medium makes of light that arrives at its surface.
 struct MediumRequest {

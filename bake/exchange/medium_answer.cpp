@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/exchange/other_light.h"
+#include "bake/exchange/patch_light.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/receivers/surface_patches.h"
 #include "bake/scattering/fresnel.h"
@@ -14,55 +16,6 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::size_t kPlane = kMostPatches;
-
-// Which patch light enters through.
-class PatchFinder {
-  public:
-    PatchFinder(const MediumAnswer& answer, std::span<const Scatterer> scatterers,
-                const BounceTree& tree)
-        : answer_(answer), scatterers_(scatterers), tree_(tree), patch_(scatterers.size()) {
-        for (std::size_t m = 0; m < answer.members.size(); ++m) {
-            patch_[answer.members[m]] = answer.patch[m];
-        }
-    }
-
-    std::uint32_t patch_at(const Receiver& at) const {
-        const std::uint32_t material = scatterers_[answer_.members.front()].material;
-        const std::uint32_t node = tree_.find(at.origin, {material, false, at.normal}, 0);
-        if (node != formats::kNone) return patch_[tree_.scatterer_of(node)];
-        // No scatterer faces that way.
-        float least = std::numeric_limits<float>::max();
-        std::uint32_t nearest = answer_.members.front();
-        for (const std::uint32_t i : answer_.members) {
-            const glm::vec3 d = scatterers_[i].position - at.origin;
-            const float square =
-                glm::dot(d, d) * (glm::dot(scatterers_[i].normal, at.normal) > 0 ? 1.0f : 4.0f);
-            if (square < least) {
-                least = square;
-                nearest = i;
-            }
-        }
-        return patch_[nearest];
-    }
-
-  private:
-    const MediumAnswer& answer_;
-    std::span<const Scatterer> scatterers_;
-    const BounceTree& tree_;
-    std::vector<std::uint32_t> patch_;  // by scatterer
-};
-
-// Irradiance 1 on one patch: its column.
-OtherLight make_columns(const PatchFinder& finder) {
-    OtherLight columns;
-    columns.bands = 1;
-    columns.environment = false;
-    columns.add = [&finder](const LitPoint& point, std::uint32_t, std::span<float> rows) {
-        rows[finder.patch_at(point.receiver)] += 1;
-        return std::uint64_t{0};
-    };
-    return columns;
-}
 
 // The dipole may return more than enters, as its half space ends nowhere; walks' rows vary.
 void bound(MediumAnswer& answer, float most) {
@@ -106,10 +59,15 @@ MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> s
     answer.patch = cut_into_patches(inside, kMostPatches);
     answer.patches = 1 + std::ranges::max(answer.patch);
     answer.share.assign(std::size_t{answer.patches} * answer.patches, {});
-    const PatchFinder finder(answer, scatterers, tree);
+    std::vector<std::uint32_t> patch_of(scatterers.size());
+    for (std::size_t m = 0; m < answer.members.size(); ++m) {
+        patch_of[answer.members[m]] = answer.patch[m];
+    }
+    const PatchLight columns{PatchLight::Scatterers{scatterers, tree, answer.members}, patch_of};
     const std::uint32_t material = scatterers[answer.members.front()].material;
     const std::vector<std::vector<float>> rows =
-        inputs.answer_of_medium(material, make_columns(finder), outside, inside, kBounceCubemap);
+        inputs.answer_of_medium(material, {.patches = &columns, .bands = 1, .environment = false},
+                                outside, inside, kBounceCubemap);
     if (inputs.context.cancelled() || rows.empty()) return answer;
     const RowLayout& layout = inputs.layouts[material];
     const float eta = inputs.bake.scene.materials[material].medium->eta;

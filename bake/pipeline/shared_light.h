@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/base/stage_log.h"
+#include "bake/exchange/other_light.h"
 #include "bake/rows/subject_states.h"
 
 namespace opaline::bake {

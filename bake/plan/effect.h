@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <glm/glm.hpp>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -58,18 +59,6 @@ struct EffectInputs {
     const formats::Medium& medium() const { return *bake.scene.materials[material].medium; }
     /// Occluders of the material's receivers; empty where nothing blocks their light.
     const RayScene& outside() const { return layout.occluded ? bake.rays : bake.sky; }
-    /// OtherLight::make_truth of light(); empty where there is none.
-    OtherLight::TrueIrradiance true_light(std::span<const TestLight> lights) const {
-        const OtherLight* const other = light();
-        return other != nullptr && other->make_truth ? other->make_truth(lights)
-                                                     : OtherLight::TrueIrradiance();
-    }
-    /// BakeInputs::light, or null where there is none that reaches the material.
-    const OtherLight* light() const {
-        const bool reaches = bake.light != nullptr && (bake.light->unreached.empty() ||
-                                                       bake.light->unreached[material] == 0);
-        return reaches ? bake.light : nullptr;
-    }
 };
 
 /// A step that runs once for a subject, before its rows. `run` null: the effect has none.
@@ -113,6 +102,13 @@ struct TruthStep {
                          const TruthReceiver& receiver, std::uint64_t& rays) = nullptr;
     /// Of `cost.receivers` receivers.
     Work (*work)(const SubjectCost& cost, TruthEffort effort) = nullptr;
+};
+
+/// A straight look at whatever surface is there.
+struct SurfaceView {
+    glm::vec3 origin{0}, direction{0};  ///< [m], clear of the surface it starts at; unit
+    std::array<float, 3> weight{};      ///< of what is seen, by band of the rows
+    std::span<const float> factor{};    ///< of each row
 };
 
 /// Where light comes from that crosses a medium straight to a point of its boundary from surfaces.
