@@ -212,8 +212,9 @@ MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<Ele
     for (std::size_t m = 0; m < media.size(); ++m) {
         const LitMedium& medium = media[m];
         if (context.cancelled()) break;
-        const std::vector<std::vector<float>> rows = job.media.light_medium(
-            {medium.material, medium.outside, medium.inside, columns, n, false}, rays);
+        const std::vector<std::vector<float>> rows = light_medium(
+            *job.media.finished,
+            {medium.material, medium.outside, medium.inside, columns, n, false}, context, rays);
         if (rows.size() == medium.outside.size() && !patches[m].answer.empty()) {
             read_columns(job, light, medium, formats::cubemap_texels(n), rows, result,
                          final_exitance);

@@ -64,7 +64,8 @@ MediumPatches find_patches(const LitMedia& media, const LampLight& light, const 
         patches.of_receiver};
     const OtherLight light_of_patches{.patches = &columns_of, .bands = 1, .environment = false};
     const std::vector<std::vector<float>> rows =
-        media.light_medium({medium.material, outside, inside, light_of_patches, n, true}, rays);
+        light_medium(*media.finished, {medium.material, outside, inside, light_of_patches, n, true},
+                     context, rays);
     if (rows.size() != outside.size() || context.cancelled()) return {};
     patches.mirrored = static_cast<float>(
         fresnel_moments(static_cast<double>(light.scene.materials[medium.material].medium->eta))
@@ -144,7 +145,7 @@ std::vector<glm::vec3> answer_patches(const MediumPatches& patches,
 std::vector<LitMedium> list_lit_media(const LitMedia& media, std::span<const ReceiverSet> receivers,
                                       std::span<const formats::PrimitiveRecord> primitives) {
     std::vector<LitMedium> lit;
-    if (!media.light_medium) return lit;
+    if (media.finished == nullptr) return lit;
     for (std::uint32_t m = 0; m < media.layouts.size(); ++m) {
         LitMedium medium;
         medium.material = m;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bake/rows/gather_rows.h"
+#include "bake/rows/medium_rows.h"
 
 namespace opaline::bake {
 namespace {
@@ -52,19 +53,6 @@ LookThrough make_look(const BakeInputs& bake, const SubjectState& subject, const
 }
 
 }  // namespace
-
-Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size) {
-    Knobs coarse = knobs;
-    coarse.cubemap_size = cubemap_size;
-    for (const EffectDescriptor& effect : effects.effects) {
-        for (const KnobSpec* knob : effect.knobs) {
-            if (knob->words.empty()) {
-                coarse.set(*knob, knob->coarse != 0 ? knob->coarse : knob->preset.front());
-            }
-        }
-    }
-    return settle(std::move(coarse));
-}
 
 std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knobs& knobs,
                                               const Context& context,

@@ -10,10 +10,6 @@
 
 namespace opaline::bake {
 
-/// The knobs of media there: KnobSpec::coarse, or those of the coarsest preset, with the choices of
-/// `knobs`.
-Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size);
-
 /// Light that an effect sends to all surfaces, or null if no acting effect does. `bake`: without
 /// it. `layouts`: by material, with their tints. The subjects have been studied; they are left
 /// without samples.
