@@ -7,6 +7,7 @@
 
 #include "bake/exchange/bounce_rays.h"
 #include "bake/exchange/bounce_tree.h"
+#include "bake/exchange/exchange_points.h"
 #include "bake/exchange/gather_sites.h"
 #include "bake/exchange/scatterer_light.h"
 #include "bake/plan/effect.h"
@@ -45,9 +46,11 @@ struct BounceLight {
     }
 };
 
-/// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.
-std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
-                                                     std::uint64_t& rays);
+/// Finds the light of scatterers; null where there are none. `media`: rows of
+/// ExchangePoints::media, in that order. `rays` counts up.
+std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, ExchangePoints points,
+                                                  std::span<const MediumRows> media,
+                                                  std::uint64_t& rays);
 
 /// What answers a view.
 struct SeenNode {

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <glm/glm.hpp>
-#include <limits>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/exchange/other_light.h"
-#include "bake/exchange/patch_light.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/receivers/surface_patches.h"
 #include "bake/scattering/fresnel.h"
@@ -44,31 +41,25 @@ BandColour MediumAnswer::sum_of(std::uint32_t to) const {
     return sum;
 }
 
-MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> scatterers,
-                         const BounceTree& tree, std::span<const float> cells,
-                         std::vector<std::uint32_t> members) {
+MediumAnswer cut_medium(std::span<const Scatterer> scatterers, std::span<const float> cells,
+                        std::vector<std::uint32_t> members) {
     MediumAnswer answer;
     answer.members = std::move(members);
-    std::vector<Receiver> outside;
     std::vector<BodyPoint> inside;
     for (const std::uint32_t i : answer.members) {
-        outside.push_back(scatterers[i].outside);
         inside.push_back(scatterers[i].inside);
         answer.area.push_back(cells[i]);
     }
     answer.patch = cut_into_patches(inside, kMostPatches);
     answer.patches = 1 + std::ranges::max(answer.patch);
     answer.share.assign(std::size_t{answer.patches} * answer.patches, {});
-    std::vector<std::uint32_t> patch_of(scatterers.size());
-    for (std::size_t m = 0; m < answer.members.size(); ++m) {
-        patch_of[answer.members[m]] = answer.patch[m];
-    }
-    const PatchLight columns{PatchLight::Scatterers{scatterers, tree, answer.members}, patch_of};
+    return answer;
+}
+
+void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers,
+                std::span<const std::vector<float>> rows, MediumAnswer& answer) {
+    if (inputs.context.cancelled() || rows.empty()) return;
     const std::uint32_t material = scatterers[answer.members.front()].material;
-    const std::vector<std::vector<float>> rows =
-        inputs.answer_of_medium(material, {.patches = &columns, .bands = 1, .environment = false},
-                                outside, inside, kBounceCubemap);
-    if (inputs.context.cancelled() || rows.empty()) return answer;
     const RowLayout& layout = inputs.layouts[material];
     const float eta = inputs.bake.scene.materials[material].medium->eta;
     std::vector<float> count(answer.patches);
@@ -78,7 +69,8 @@ MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> s
     const std::uint32_t own_bands = layout.bands();
     for (std::size_t m = 0; m < rows.size(); ++m) {
         const std::uint32_t to = answer.patch[m];
-        const std::vector<float> weight = weigh_rows_of_medium(layout, eta, inside[m].normal);
+        const std::vector<float> weight =
+            weigh_rows_of_medium(layout, eta, scatterers[answer.members[m]].inside.normal);
         for (std::size_t k = 0; k < weight.size(); ++k) {
             const float factor = weight[k] / count[to];
             for (std::uint32_t b = 0; b < 3; ++b) {
@@ -94,7 +86,6 @@ MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> s
         std::ranges::for_each(share, [](float& s) { s = std::max(s, 0.0f); });
     }
     bound(answer, static_cast<float>(1 - fresnel_moments(double{eta}).external));
-    return answer;
 }
 
 void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterers,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bake/exchange/other_light.h"
 #include "bake/rows/gather_rows.h"
 
 namespace opaline::bake {
@@ -15,6 +16,53 @@ Knobs coarse_of(const EffectTable& effects, const Knobs& knobs, std::uint32_t cu
         coarse.set(*knob, knobs[*knob]);
     }
     return coarse;
+}
+
+// Rows of points while only those effects of a subject act that `counts` holds for.
+template <class Counts>
+std::vector<std::vector<float>> rows_of_some(const BakeInputs& bake, const Knobs& knobs,
+                                             const Context& context, SubjectState& subject,
+                                             const ReceiverSet& at, Counts&& counts,
+                                             std::uint64_t& rays) {
+    std::vector<std::uint8_t> acted;
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        acted.push_back(subject.effects[e].acts ? 1 : 0);
+        subject.effects[e].acts = subject.effects[e].acts && counts(bake.effects.effects[e]);
+    }
+    auto rows = rows_of_points(bake, knobs, context, subject, at.outside, at.inside, rays);
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        subject.effects[e].acts = acted[e] != 0;
+    }
+    return rows;
+}
+
+bool lets_cross(const EffectDescriptor& effect) {
+    return effect.look_through != nullptr;
+}
+
+// What effects say at points of one medium.
+MediumRows ask_medium(const BakeInputs& bake, const Knobs& knobs, const Context& context,
+                      SubjectState& own, const OtherLight& patches, const ReceiverSet& at,
+                      std::uint64_t& rays) {
+    const Knobs coarse = coarse_knobs(bake.effects, knobs, kBounceCubemap);
+    BakeInputs lit = bake;
+    lit.light = &patches;
+    // Where light leaves at its entry, others than the effect that adds it scale its row.
+    const auto scatters = [&](const EffectDescriptor& effect) {
+        return !lets_cross(effect) &&
+               (effect.adds_other_light || (own.layout.at_entry && effect.add_at_entry != nullptr));
+    };
+    MediumRows rows{rows_of_some(lit, coarse, context, own, at, scatters, rays), {}, {}};
+    for (std::size_t e = 0; e < own.effects.size(); ++e) {
+        const EffectDescriptor& effect = bake.effects.effects[e];
+        if (!own.effects[e].acts || !lets_cross(effect)) continue;
+        rows.crossing = rows_of_some(bake, coarse, context, own, at, lets_cross, rays);
+        const Knobs views = coarse_knobs(bake.effects, knobs, knobs.cubemap_size);
+        rows.through =
+            effect.look_through(inputs_of(bake, own, e, views, context), at.inside, rays);
+        break;
+    }
+    return rows;
 }
 
 }  // namespace
@@ -30,6 +78,25 @@ Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t
         }
     }
     return settle(std::move(coarse));
+}
+
+std::vector<MediumRows> ask_media(const BakeInputs& bake, const Knobs& knobs,
+                                  const Context& context, const ExchangePoints& points,
+                                  std::vector<SubjectState>& subjects, std::uint64_t& rays) {
+    std::vector<MediumRows> rows;
+    for (const MediumAnswer& medium : points.media) {
+        ReceiverSet at;
+        for (const std::uint32_t i : medium.members) {
+            at.outside.push_back(points.scatterers[i].outside);
+            at.inside.push_back(points.scatterers[i].inside);
+        }
+        const PatchLight columns = points.light_of(medium);
+        const OtherLight patches{.patches = &columns, .bands = 1, .environment = false};
+        SubjectState& own =
+            *std::ranges::find(subjects, points.material_of(medium), &SubjectState::material);
+        rows.push_back(ask_medium(bake, knobs, context, own, patches, at, rays));
+    }
+    return rows;
 }
 
 bool takes_other_light(const EffectTable& effects, std::span<const PlanEntry> decisions,

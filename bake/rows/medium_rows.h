@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "bake/exchange/exchange_points.h"
 #include "bake/rows/subject_states.h"
 
 namespace opaline::bake {
@@ -11,6 +12,13 @@ namespace opaline::bake {
 /// The knobs of media where a step toward a result needs their rows: KnobSpec::coarse, or those of
 /// the coarsest preset, with the choices of `knobs`.
 Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size);
+
+/// What effects say of the media of an exchange, at the knobs of the preset `draft` and its cube
+/// map, because their light is smooth where it arrives. `bake`: without light of surfaces. The
+/// subjects have been studied; they are left without samples.
+std::vector<MediumRows> ask_media(const BakeInputs& bake, const Knobs& knobs,
+                                  const Context& context, const ExchangePoints& points,
+                                  std::vector<SubjectState>& subjects, std::uint64_t& rays);
 
 /// Whether any effect turns light that replaces the environment into rows of a material.
 bool takes_other_light(const EffectTable& effects, std::span<const PlanEntry> decisions,

@@ -9,7 +9,6 @@
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
-#include "bake/exchange/other_light.h"
 #include "bake/exchange/scatterers.h"
 #include "bake/plan/effect.h"
 #include "formats/opal/cubemap.h"
@@ -100,20 +99,6 @@ constexpr std::array<DecisionRule, 2> kRules{
       [](const PlanEntry& entry, RowLayout& layout) { layout.filtered = entry.on; }}}};
 constexpr std::array<const KnobSpec*, 1> kKnobs{&kBounceRays};
 
-std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t& rays) {
-    LightInputs wanted = inputs;
-    wanted.rays_of_receiver = rays_of_receiver(inputs.knobs);
-    auto light = std::make_unique<OtherLight>();
-    light->surfaces = find_bounce_light(wanted, rays);
-    if (!light->surfaces) return nullptr;
-    light->bands = light->surfaces->bands;
-    light->name = "interreflection";
-    for (const std::uint8_t acts : inputs.acts) {
-        light->unreached.push_back(acts == 0 ? 1 : 0);
-    }
-    return light;
-}
-
 constexpr double kCells = 4;  // in the width of the largest
 
 // Nothing rises above its horizon. Of backs the horizon is not known.
@@ -131,7 +116,7 @@ EffectDescriptor describe_interreflection(Effect id) {
             .rules = kRules,
             .knobs = kKnobs,
             .gather = {.work = bounce_rows_work},
-            .make_light = make_light,
+            .exchange_rays = rays_of_receiver,
             .light_work = bounce_light_work,
             .held_light = formats::TermSet::interreflection};
 }

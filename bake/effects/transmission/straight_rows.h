@@ -27,7 +27,7 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
                            const BounceLight* surfaces = nullptr);
 
 /// The surfaces from which light crosses the body straight to a point, by `views` of it, as of
-/// EffectDescriptor::make_look_through. Counts `rays`.
+/// EffectDescriptor::look_through. Counts `rays`.
 CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
                            std::uint64_t& rays);
 

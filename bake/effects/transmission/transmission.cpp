@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bake/base/frame.h"
+#include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
 #include "bake/effects/transmission/rules_transmission.h"
 #include "bake/effects/transmission/straight_paths.h"
@@ -206,11 +207,22 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
                         light != nullptr ? light->surfaces.get() : nullptr);
 }
 
-LookThrough make_look_through(const EffectInputs& inputs) {
-    return [body = make_straight_body(inputs), views = whole(inputs.knobs, kStraightViews)](
-               const BodyPoint& point, std::uint64_t& rays) {
-        return look_through(body, point, views, rays);
-    };
+std::vector<CrossingViews> look_from_all(const EffectInputs& inputs,
+                                         std::span<const BodyPoint> points, std::uint64_t& rays) {
+    const StraightBody body = make_straight_body(inputs);
+    const std::uint32_t views = whole(inputs.knobs, kStraightViews);
+    std::vector<CrossingViews> seen(points.size());
+    for_each_block_in_order(
+        points.size(), 16, inputs.context,
+        [&](Range range) {
+            std::uint64_t traced = 0;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                seen[i] = look_through(body, points[i], views, traced);
+            }
+            return traced;
+        },
+        [&](Range, std::uint64_t traced) { rays += traced; });
+    return seen;
 }
 
 struct Truth : Prepared {
@@ -283,7 +295,7 @@ EffectDescriptor describe_transmission(Effect id) {
                               return straight_truth_work(cost, 2.0 * truth_views(effort));
                           }},
             .held_light = formats::TermSet::unscattered,
-            .make_look_through = make_look_through,
+            .look_through = look_from_all,
             .warn_of_plan = warn_of_reach,
             .warn_of_model = warn_of_model};
 }
