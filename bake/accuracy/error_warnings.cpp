@@ -81,7 +81,7 @@ std::vector<std::string_view> unmeasured_effects(const EffectTable& effects,
     for (const PlanEntry& entry : plan) {
         const EffectDescriptor& effect = effects[entry.effect];
         if (entry.on && !effect.help.empty() && effect.gather.add == nullptr &&
-            effect.make_light == nullptr &&
+            effect.exchange_rays == nullptr &&
             std::find(names.begin(), names.end(), effect.name) == names.end()) {
             names.push_back(effect.name);
         }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "bake/exchange/other_light.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -46,7 +48,7 @@ bool SubjectTruth::is_expensive() const {
 std::string SubjectTruth::name() const {
     std::string all = join(parts, "+", [](const EffectDescriptor& e) { return e.name; });
     for (const Part& part : parts) {
-        const OtherLight* const light = part.inputs.light();
+        const OtherLight* const light = light_of(part.inputs);
         if (part.effect->adds_other_light && light != nullptr && !light->name.empty()) {
             return all + "+" + std::string(light->name);
         }

@@ -124,7 +124,7 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
                           glow};
     BakedEmitters baked;
     MediaRows of_media(job.primitives.size());
-    if (job.media.light_medium) {
+    if (job.media.finished != nullptr) {
         of_media = run_stage(log, "media lit by emitters", [&](std::uint64_t& rays) {
             return light_media({job.media, job.receivers, job.primitives, particles}, light,
                                elements, exitance, context, rays);

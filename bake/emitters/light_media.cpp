@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/emitters/media_patches.h"
+#include "bake/exchange/other_light.h"
 #include "bake/lamps/trace_particles.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/packet_lane.h"
@@ -17,8 +18,6 @@ namespace {
 
 constexpr std::uint32_t kMostPasses = 24;
 constexpr double kLeastChange = 0.01;
-// Rays of a point whose light is averaged over many.
-constexpr std::uint32_t kRaysOfAveraged = 16;
 
 MediaLight no_light(const MediaJob& job) {
     return {std::vector<std::vector<glm::vec3>>(job.primitives.size())};
@@ -184,28 +183,6 @@ std::uint32_t lamp_basis(std::size_t lamps) {
     return n;
 }
 
-OtherLight make_lamp_columns(const LampLight& light) {
-    OtherLight columns;
-    columns.bands = 3;
-    columns.environment = false;
-    columns.add = [&light](const LitPoint& point, std::uint32_t n, std::span<float> rows) {
-        LampLight own = light;
-        if (point.is_averaged) own.samples = std::min(own.samples, kRaysOfAveraged);
-        std::uint64_t rays = 0;
-        const std::vector<glm::dvec3> irradiance =
-            receive_light(own, point.receiver, key_of(point.receiver), rays);
-        const std::size_t texels = formats::cubemap_texels(n);
-        for (std::size_t e = 0; e < irradiance.size(); ++e) {
-            for (int b = 0; b < 3; ++b) {
-                rows[static_cast<std::size_t>(b) * texels + e] +=
-                    static_cast<float>(irradiance[e][b]);
-            }
-        }
-        return rays;
-    };
-    return columns;
-}
-
 MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<ElementLight> elements,
                       MediaLight& exitance, const Context& context, std::uint64_t& rays) {
     const std::vector<LitMedium> media = list_lit_media(job.media, job.receivers, job.primitives);
@@ -229,14 +206,15 @@ MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<Ele
         send(job, light, exitance, of_surfaces, elements, context, rays);
         if (is_last) break;
     }
-    const OtherLight columns = make_lamp_columns(lit);
+    const OtherLight columns{.lamps = &lit, .environment = false};
     const std::uint32_t n = lamp_basis(light.sources.size());
     MediaLight final_exitance = no_light(job);
     for (std::size_t m = 0; m < media.size(); ++m) {
         const LitMedium& medium = media[m];
         if (context.cancelled()) break;
-        const std::vector<std::vector<float>> rows = job.media.light_medium(
-            {medium.material, medium.outside, medium.inside, columns, n, false}, rays);
+        const std::vector<std::vector<float>> rows = light_medium(
+            *job.media.finished,
+            {medium.material, medium.outside, medium.inside, columns, n, false}, context, rays);
         if (rows.size() == medium.outside.size() && !patches[m].answer.empty()) {
             read_columns(job, light, medium, formats::cubemap_texels(n), rows, result,
                          final_exitance);

@@ -64,8 +64,4 @@ MediaRows light_media(const MediaJob& job, const LampLight& light, std::span<Ele
 /// The smallest basis that has a column for each lamp: n of 6 n n, a power of two.
 std::uint32_t lamp_basis(std::size_t lamps);
 
-/// The light of lamps as light that replaces the environment: column e is lamp e. `light` must
-/// outlive it.
-OtherLight make_lamp_columns(const LampLight& light);
-
 }  // namespace opaline::bake

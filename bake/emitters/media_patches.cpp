@@ -1,14 +1,14 @@
 #include "bake/emitters/media_patches.h"
 
 #include <algorithm>
-#include <array>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/exchange/other_light.h"
+#include "bake/exchange/patch_light.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/receivers/receiver.h"
 #include "bake/receivers/surface_patches.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/transport/packet_lane.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -22,18 +22,6 @@ std::uint32_t basis_for(std::size_t receivers) {
     while (n < kPatchBasis && formats::cubemap_texels(n) < receivers)
         n *= 2;
     return n;
-}
-
-// The receiver of a medium nearest to the place where a ray straight down meets its surface.
-std::uint32_t receiver_below(const LampLight& light, const LitMedium& medium, const Receiver& at) {
-    const PacketHits hits = closest_of_one(light.rays, at.origin, -at.normal);
-    const auto own = hits.hit[0] == 0 ? medium.primitives.end()
-                                      : std::ranges::find(medium.primitives, hits.primitive[0]);
-    if (own == medium.primitives.end()) return formats::kNone;
-    const std::array<float, 3> weight{1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]};
-    const auto corner = static_cast<std::size_t>(std::ranges::max_element(weight) - weight.begin());
-    return medium.first[static_cast<std::size_t>(own - medium.primitives.begin())] +
-           light.scene.primitives[*own].index[hits.first_index[0] + corner];
 }
 
 // A few members of each patch, evenly spaced.
@@ -54,21 +42,6 @@ std::vector<std::vector<std::uint32_t>> choose_probes(const LitMedium& medium,
     return members;
 }
 
-// Irradiance 1 on one patch: its column.
-OtherLight make_patch_columns(const LampLight& light, const LitMedium& medium,
-                              std::span<const std::uint32_t> patch) {
-    OtherLight columns;
-    columns.bands = 1;
-    columns.environment = false;
-    columns.add = [&light, &medium, patch](const LitPoint& point, std::uint32_t,
-                                           std::span<float> rows) {
-        const std::uint32_t receiver = receiver_below(light, medium, point.receiver);
-        if (receiver != formats::kNone) rows[patch[receiver]] += 1;
-        return std::uint64_t{1};
-    };
-    return columns;
-}
-
 }  // namespace
 
 MediumPatches find_patches(const LitMedia& media, const LampLight& light, const LitMedium& medium,
@@ -86,9 +59,13 @@ MediumPatches find_patches(const LitMedia& media, const LampLight& light, const 
             inside.push_back(medium.inside[i]);
         }
     }
-    const OtherLight light_of_patches = make_patch_columns(light, medium, patches.of_receiver);
+    const PatchLight columns_of{
+        PatchLight::Receivers{light.scene, light.rays, medium.primitives, medium.first},
+        patches.of_receiver};
+    const OtherLight light_of_patches{.patches = &columns_of, .bands = 1, .environment = false};
     const std::vector<std::vector<float>> rows =
-        media.light_medium({medium.material, outside, inside, light_of_patches, n, true}, rays);
+        light_medium(*media.finished, {medium.material, outside, inside, light_of_patches, n, true},
+                     context, rays);
     if (rows.size() != outside.size() || context.cancelled()) return {};
     patches.mirrored = static_cast<float>(
         fresnel_moments(static_cast<double>(light.scene.materials[medium.material].medium->eta))
@@ -168,7 +145,7 @@ std::vector<glm::vec3> answer_patches(const MediumPatches& patches,
 std::vector<LitMedium> list_lit_media(const LitMedia& media, std::span<const ReceiverSet> receivers,
                                       std::span<const formats::PrimitiveRecord> primitives) {
     std::vector<LitMedium> lit;
-    if (!media.light_medium) return lit;
+    if (media.finished == nullptr) return lit;
     for (std::uint32_t m = 0; m < media.layouts.size(); ++m) {
         LitMedium medium;
         medium.material = m;

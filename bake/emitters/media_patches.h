@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -12,32 +11,17 @@
 #include "bake/lamps/receiver_light.h"
 #include "bake/plan/row_layout.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/other_light.h"
+#include "bake/rows/medium_rows.h"
 #include "formats/opal/asset.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// What a medium makes of light that arrives at its surface.
-struct MediumRequest {
-    std::uint32_t material = 0;
-    std::span<const Receiver> outside;
-    std::span<const BodyPoint> inside;
-    const OtherLight& light;         ///< without the environment
-    std::uint32_t cubemap_size = 1;  ///< of its basis
-    bool is_coarse = false;          ///< a step toward the result: cheaper
-};
-
-/// Rows of the points of a request: terms * 3 * 6 n n coefficients each. None where the medium has
-/// no rows.
-using LightMedium = std::function<std::vector<std::vector<float>>(const MediumRequest& request,
-                                                                  std::uint64_t& rays)>;
-
 /// Media of a scene, as the emitters' stages see them.
 struct LitMedia {
-    LightMedium light_medium;             ///< empty: there are none
-    std::span<const RowLayout> layouts;   ///< by material
-    std::span<const formats::Rgb> color;  ///< of all vertices of the file, without images
+    const FinishedMedia* finished = nullptr;  ///< null: there are none
+    std::span<const RowLayout> layouts;       ///< by material
+    std::span<const formats::Rgb> color;      ///< of all vertices of the file, without images
 };
 
 /// The receivers of one medium, of all its primitives.

@@ -144,13 +144,7 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         const formats::Volume& volume = scene.volumes[v];
         if (!is_seen_to_glow(volume, knobs)) continue;
-        Lamp lamp{.name = free_emitter_name(volume.emitter,
-                                            [&](std::string_view name) {
-                                                return std::ranges::any_of(
-                                                    lamps, [&](const Lamp& other) {
-                                                        return other.name == name;
-                                                    });
-                                            }),
+        Lamp lamp{.name = free_emitter_name(volume.emitter, names_of(lamps)),
                   .primitives = {},
                   .lights = {},
                   .volume = v,

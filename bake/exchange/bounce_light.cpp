@@ -70,11 +70,10 @@ BandColour share_of_crossing(const formats::Medium& medium, const BandColour& sc
 }
 
 // `scattered`: MediumAnswer::sum_of the scatterer's patch.
-void weigh_through(const Field& field, const BounceTree& tree, const LookThrough& look,
+void weigh_through(const Field& field, const BounceTree& tree, const CrossingViews& crossing,
                    std::size_t i, const BandColour& scattered, Arrivals& arrivals,
                    std::uint64_t& rays) {
     const Scatterer& s = field.scatterers[i];
-    const CrossingViews crossing = look(s.inside, rays);
     const std::vector<float> of_sky = field.light.crossing.row(i);
     double sum = 0;
     std::array<double, 3> by_band{}, all{};
@@ -123,24 +122,17 @@ void weigh_through(const Field& field, const BounceTree& tree, const LookThrough
     field.light.emitted.set(i, to);
 }
 
-// By material.
-std::vector<LookThrough> looks_through(const LightInputs& inputs) {
-    std::vector<LookThrough> looks(inputs.layouts.size());
-    for (std::uint32_t m = 0; m < looks.size() && inputs.look_through; ++m) {
-        looks[m] = inputs.look_through(m);
-    }
-    return looks;
-}
-
-std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tree,
-                                       std::uint64_t& rays) {
+std::vector<Arrivals> weigh_scatterers(const Field& field, std::span<const MediumRows> media,
+                                       const BounceTree& tree, std::uint64_t& rays) {
     std::vector<Arrivals> arrivals(field.scatterers.size());
     const BounceGrid grid = make_bounce_grid(kRaysOfScatterer);
-    const std::vector<LookThrough> looks = looks_through(field.inputs);
-    std::vector<BandColour> scattered(looks.empty() ? 0 : arrivals.size());
-    for (const MediumAnswer& answer : field.light.answers) {
-        for (std::size_t m = 0; m < answer.members.size(); ++m) {
+    std::vector<BandColour> scattered(arrivals.size());
+    std::vector<const CrossingViews*> through(arrivals.size());
+    for (std::size_t k = 0; k < media.size(); ++k) {
+        const MediumAnswer& answer = field.light.answers[k];
+        for (std::size_t m = 0; m < media[k].through.size(); ++m) {
             scattered[answer.members[m]] = answer.sum_of(answer.patch[m]);
+            through[answer.members[m]] = &media[k].through[m];
         }
     }
     constexpr std::size_t kBlock = 16;
@@ -165,8 +157,8 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, const BounceTree& tre
                 if (field.passes_light(i)) {
                     traced += weigh(s.beyond, field.light.open_beyond[i], arrivals[i].back);
                 }
-                if (const LookThrough& look = looks[field.scatterers[i].material]) {
-                    weigh_through(field, tree, look, i, scattered[i], arrivals[i], traced);
+                if (through[i] != nullptr) {
+                    weigh_through(field, tree, *through[i], i, scattered[i], arrivals[i], traced);
                 }
             }
             return traced;
@@ -268,20 +260,6 @@ SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, 
     return report;
 }
 
-// Light enters a medium where no receiver looks, too: points all over those that are seen.
-void add_spread(const LightInputs& inputs, std::vector<Scatterer>& scatterers) {
-    constexpr std::size_t kEvenPoints = 256;
-    std::vector<std::uint8_t> is_seen(inputs.layouts.size());
-    for (const Scatterer& s : scatterers) {
-        is_seen[s.material] = inputs.layouts[s.material].translucent ? 1 : 0;
-    }
-    for (std::uint32_t m = 0; m < is_seen.size(); ++m) {
-        if (is_seen[m] == 0) continue;
-        const std::vector<Scatterer> spread = spread_over_material(inputs, m, kEvenPoints);
-        scatterers.insert(scatterers.end(), spread.begin(), spread.end());
-    }
-}
-
 }  // namespace
 
 std::uint32_t count_rays_of_site(std::uint32_t of_receiver) {
@@ -294,14 +272,14 @@ std::size_t count_scatterers(std::uint32_t rays_of_receiver) {
     return static_cast<std::size_t>(std::clamp(kPerRay * rays_of_receiver, kFewest, kMost));
 }
 
-std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
-                                                     std::uint64_t& rays) {
+std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, ExchangePoints points,
+                                                  std::span<const MediumRows> media,
+                                                  std::uint64_t& rays) {
     const std::uint32_t count = inputs.rays_of_receiver;
-    std::vector<Scatterer> scatterers = find_scatterers(inputs, count_scatterers(count), rays);
+    const std::span<const Scatterer> scatterers = points.scatterers;
     if (scatterers.empty()) return nullptr;
     const bool is_coloured = std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
-    add_spread(inputs, scatterers);
-    ScattererLight own = light_scatterers(inputs, scatterers, is_coloured ? 3 : 1, rays);
+    ScattererLight own = light_scatterers(inputs, points, media, is_coloured ? 3 : 1, rays);
     const Field field{inputs, scatterers, own};
     auto light = std::make_shared<BounceLight>(
         BounceLight{.scene = inputs.bake.scene,
@@ -316,7 +294,7 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .of_averaged = make_bounce_grid(kRaysOfAveraged),
                     .sites = {},
                     .site_rows = {}});
-    const std::vector<Arrivals> arrivals = weigh_scatterers(field, light->tree, rays);
+    const std::vector<Arrivals> arrivals = weigh_scatterers(field, media, light->tree, rays);
     light->report = add_bounces(field, arrivals, light->tree);
     light_sites(inputs, *light, rays);
     return light;

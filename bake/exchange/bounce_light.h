@@ -7,12 +7,12 @@
 
 #include "bake/exchange/bounce_rays.h"
 #include "bake/exchange/bounce_tree.h"
+#include "bake/exchange/exchange_points.h"
 #include "bake/exchange/gather_sites.h"
 #include "bake/exchange/scatterer_light.h"
 #include "bake/exchange/series_end.h"
 #include "bake/plan/effect.h"
 #include "bake/transport/coded_rows.h"
-#include "bake/transport/other_light.h"
 
 namespace opaline::bake {
 
@@ -47,9 +47,11 @@ struct BounceLight {
     }
 };
 
-/// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.
-std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
-                                                     std::uint64_t& rays);
+/// Finds the light of scatterers; null where there are none. `media`: rows of
+/// ExchangePoints::media, in that order. `rays` counts up.
+std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, ExchangePoints points,
+                                                  std::span<const MediumRows> media,
+                                                  std::uint64_t& rays);
 
 /// What answers a view.
 struct SeenNode {
@@ -65,14 +67,22 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
                                 const BounceTree& tree, std::span<const SurfaceView> views,
                                 double solid_angle, std::uint64_t& traced);
 
-/// Adds the radiance that views see of other surfaces, as OtherLight::add_seen: radiosity over pi
-/// of the clusters as large as each view's footprint, the same in all directions. Returns the rays
-/// traced.
+/// Adds the radiance that views see of other surfaces per unit of each basis light, times their
+/// weights and factors: to `rows`, a row for each factor, `bands` planes each as of add_bounced. It
+/// is radiosity over pi of the clusters as large as each view's footprint (`solid_angle` [sr]), the
+/// same in all directions. Returns the rays traced.
 std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceView> views,
                              double solid_angle, std::uint32_t cubemap_size, std::uint32_t bands,
                              std::span<float> rows);
 
-/// Adds irradiance at a point, Haar rows as of OtherLight::add: interpolated from the sites around,
+/// Where light is asked for, outside of any boundary.
+struct LitPoint {
+    const Receiver& receiver;
+    /// One of many points whose light is averaged, as the samples of a medium: each may be noisy.
+    bool is_averaged = false;
+};
+
+/// Adds irradiance at a point, Haar rows as of add_irradiance: interpolated from the sites around,
 /// or by final gathering where these are too few. Returns the rays traced, 0 if interpolated.
 std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
                           std::uint32_t cubemap_size, std::span<float> rows);

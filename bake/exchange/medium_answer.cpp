@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <glm/glm.hpp>
-#include <limits>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
@@ -14,55 +13,6 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::size_t kPlane = kMostPatches;
-
-// Which patch light enters through.
-class PatchFinder {
-  public:
-    PatchFinder(const MediumAnswer& answer, std::span<const Scatterer> scatterers,
-                const BounceTree& tree)
-        : answer_(answer), scatterers_(scatterers), tree_(tree), patch_(scatterers.size()) {
-        for (std::size_t m = 0; m < answer.members.size(); ++m) {
-            patch_[answer.members[m]] = answer.patch[m];
-        }
-    }
-
-    std::uint32_t patch_at(const Receiver& at) const {
-        const std::uint32_t material = scatterers_[answer_.members.front()].material;
-        const std::uint32_t node = tree_.find(at.origin, {material, false, at.normal}, 0);
-        if (node != formats::kNone) return patch_[tree_.scatterer_of(node)];
-        // No scatterer faces that way.
-        float least = std::numeric_limits<float>::max();
-        std::uint32_t nearest = answer_.members.front();
-        for (const std::uint32_t i : answer_.members) {
-            const glm::vec3 d = scatterers_[i].position - at.origin;
-            const float square =
-                glm::dot(d, d) * (glm::dot(scatterers_[i].normal, at.normal) > 0 ? 1.0f : 4.0f);
-            if (square < least) {
-                least = square;
-                nearest = i;
-            }
-        }
-        return patch_[nearest];
-    }
-
-  private:
-    const MediumAnswer& answer_;
-    std::span<const Scatterer> scatterers_;
-    const BounceTree& tree_;
-    std::vector<std::uint32_t> patch_;  // by scatterer
-};
-
-// Irradiance 1 on one patch: its column.
-OtherLight make_columns(const PatchFinder& finder) {
-    OtherLight columns;
-    columns.bands = 1;
-    columns.environment = false;
-    columns.add = [&finder](const LitPoint& point, std::uint32_t, std::span<float> rows) {
-        rows[finder.patch_at(point.receiver)] += 1;
-        return std::uint64_t{0};
-    };
-    return columns;
-}
 
 // The dipole may return more than enters, as its half space ends nowhere; walks' rows vary.
 void bound(MediumAnswer& answer, float most) {
@@ -91,26 +41,25 @@ BandColour MediumAnswer::sum_of(std::uint32_t to) const {
     return sum;
 }
 
-MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> scatterers,
-                         const BounceTree& tree, std::span<const float> cells,
-                         std::vector<std::uint32_t> members) {
+MediumAnswer cut_medium(std::span<const Scatterer> scatterers, std::span<const float> cells,
+                        std::vector<std::uint32_t> members) {
     MediumAnswer answer;
     answer.members = std::move(members);
-    std::vector<Receiver> outside;
     std::vector<BodyPoint> inside;
     for (const std::uint32_t i : answer.members) {
-        outside.push_back(scatterers[i].outside);
         inside.push_back(scatterers[i].inside);
         answer.area.push_back(cells[i]);
     }
     answer.patch = cut_into_patches(inside, kMostPatches);
     answer.patches = 1 + std::ranges::max(answer.patch);
     answer.share.assign(std::size_t{answer.patches} * answer.patches, {});
-    const PatchFinder finder(answer, scatterers, tree);
+    return answer;
+}
+
+void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers,
+                std::span<const std::vector<float>> rows, MediumAnswer& answer) {
+    if (inputs.context.cancelled() || rows.empty()) return;
     const std::uint32_t material = scatterers[answer.members.front()].material;
-    const std::vector<std::vector<float>> rows =
-        inputs.answer_of_medium(material, make_columns(finder), outside, inside, kBounceCubemap);
-    if (inputs.context.cancelled() || rows.empty()) return answer;
     const RowLayout& layout = inputs.layouts[material];
     const float eta = inputs.bake.scene.materials[material].medium->eta;
     std::vector<float> count(answer.patches);
@@ -120,7 +69,8 @@ MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> s
     const std::uint32_t own_bands = layout.bands();
     for (std::size_t m = 0; m < rows.size(); ++m) {
         const std::uint32_t to = answer.patch[m];
-        const std::vector<float> weight = weigh_rows_of_medium(layout, eta, inside[m].normal);
+        const std::vector<float> weight =
+            weigh_rows_of_medium(layout, eta, scatterers[answer.members[m]].inside.normal);
         for (std::size_t k = 0; k < weight.size(); ++k) {
             const float factor = weight[k] / count[to];
             for (std::uint32_t b = 0; b < 3; ++b) {
@@ -136,7 +86,6 @@ MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> s
         std::ranges::for_each(share, [](float& s) { s = std::max(s, 0.0f); });
     }
     bound(answer, static_cast<float>(1 - fresnel_moments(double{eta}).external));
-    return answer;
 }
 
 void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterers,

@@ -36,11 +36,15 @@ struct MediumAnswer {
 /// Patches of one medium, at most: columns of the rows that say what it answers.
 inline constexpr std::uint32_t kMostPatches = 6 * kBounceCubemap * kBounceCubemap;
 
-/// The answer of the scatterers `members`, all of one medium, from rows that its effects make of
-/// light on one patch each; zeros where no effect scatters. `tree` holds all `scatterers`.
-MediumAnswer find_answer(const LightInputs& inputs, std::span<const Scatterer> scatterers,
-                         const BounceTree& tree, std::span<const float> cells,
-                         std::vector<std::uint32_t> members);
+/// The scatterers `members`, all of one medium, in patches; its shares are 0. `cells`: areas of all
+/// scatterers [m^2].
+MediumAnswer cut_medium(std::span<const Scatterer> scatterers, std::span<const float> cells,
+                        std::vector<std::uint32_t> members);
+
+/// Sets its shares from rows that its effects make at its members of light on one patch each; they
+/// stay 0 where no effect scatters.
+void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers,
+                std::span<const std::vector<float>> rows, MediumAnswer& answer);
 
 /// Adds what the medium makes of irradiance to rows of radiosity,
 ///     B_i += c_i (A_pp E_i + sum over other patches q of A_pq E_q),   p the patch of i,

@@ -34,6 +34,7 @@ std::vector<float> make_even_sky() {
 struct LitScatterers {
     const LightInputs& inputs;
     std::span<Scatterer> scatterers;
+    std::span<const MediumRows> media;  // in the order of the answers
     ScattererLight light;
 
     const formats::Material& material(std::size_t i) const {
@@ -102,7 +103,8 @@ void add_leaving(const RowLayout& layout, std::span<const float> weight,
 
 // Light of the environment at points of one medium; what crosses it straight to them.
 std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
-                           const MediumAnswer& answer, CodedRows& irradiance) {
+                           const MediumAnswer& answer, std::span<const std::vector<float>> crossing,
+                           CodedRows& irradiance) {
     const std::span<const std::uint32_t> members = answer.members;
     const std::uint32_t material = field.scatterers[members.front()].material;
     const std::uint32_t bands = field.light.bands;
@@ -126,24 +128,15 @@ std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
             return traced;
         },
         [&](Range, std::uint64_t traced) { rays += traced; });
-    if (!field.inputs.look_through || !field.inputs.look_through(material)) return rays;
-    std::vector<Receiver> outside;
-    std::vector<BodyPoint> inside;
-    for (const std::uint32_t i : members) {
-        outside.push_back(field.scatterers[i].outside);
-        inside.push_back(field.scatterers[i].inside);
-    }
-    const std::vector<std::vector<float>> rows =
-        field.inputs.crossing_rows(material, outside, inside, kCubemap);
-    if (field.inputs.context.cancelled()) return rays;
+    if (crossing.empty() || field.inputs.context.cancelled()) return rays;
     field.light.crossing.resize(field.scatterers.size());
     const RowLayout& layout = field.inputs.layouts[material];
     const float eta = field.inputs.bake.scene.materials[material].medium->eta;
     std::vector<float> leaving(field.light.row_size());
-    for (std::size_t m = 0; m < rows.size(); ++m) {
+    for (std::size_t m = 0; m < crossing.size(); ++m) {
         std::ranges::fill(leaving, 0.0f);
-        add_leaving(layout, weigh_rows_of_medium(layout, eta, inside[m].normal), rows[m], bands,
-                    leaving);
+        const glm::vec3 normal = field.scatterers[members[m]].inside.normal;
+        add_leaving(layout, weigh_rows_of_medium(layout, eta, normal), crossing[m], bands, leaving);
         field.light.crossing.set(members[m], leaving);
     }
     return rays;
@@ -152,26 +145,13 @@ std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
 // B of media, from what they make of light on each patch; without what boundaries mirror
 // (bounce_rays.h).
 std::uint64_t light_media(LitScatterers& field, const DirectionSet& directions) {
-    std::vector<std::vector<std::uint32_t>> members(field.inputs.layouts.size());
-    bool is_any = false;
-    for (std::uint32_t i = 0; i < field.scatterers.size(); ++i) {
-        const std::uint32_t material = field.scatterers[i].material;
-        if (field.inputs.layouts[material].translucent) {
-            members[material].push_back(i);
-            is_any = true;
-        }
-    }
-    if (!is_any) return 0;
-    const BounceTree tree(field.scatterers, field.inputs.layouts.size(), 0);
-    const std::vector<float> cells = tree.cells();
+    if (field.light.answers.empty()) return 0;
     CodedRows irradiance(field.scatterers.size(), field.light.row_size());
     std::uint64_t rays = 0;
-    for (std::vector<std::uint32_t>& own : members) {
-        if (own.empty() || field.inputs.context.cancelled()) continue;
-        field.light.answers.push_back(
-            find_answer(field.inputs, field.scatterers, tree, cells, std::move(own)));
-        const MediumAnswer& answer = field.light.answers.back();
-        rays += light_medium(field, directions, answer, irradiance);
+    for (std::size_t m = 0; m < field.media.size() && !field.inputs.context.cancelled(); ++m) {
+        MediumAnswer& answer = field.light.answers[m];
+        set_shares(field.inputs, field.scatterers, field.media[m].scattered, answer);
+        rays += light_medium(field, directions, answer, field.media[m].crossing, irradiance);
         add_answer(answer, field.scatterers, irradiance, field.light.bands, field.inputs.context,
                    field.light.emitted);
     }
@@ -206,17 +186,16 @@ float even_share(std::span<const float> plane) {
     return static_cast<float>(relit(plane, even_sky)) / std::numbers::pi_v<float>;
 }
 
-ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
-                                std::uint32_t bands, std::uint64_t& rays) {
-    const std::size_t count = scatterers.size();
+ScattererLight light_scatterers(const LightInputs& inputs, ExchangePoints& points,
+                                std::span<const MediumRows> media, std::uint32_t bands,
+                                std::uint64_t& rays) {
+    const std::size_t count = points.scatterers.size();
     LitScatterers field{inputs,
-                        scatterers,
-                        {bands,
-                         CodedRows(count, bands * kRowTexels),
-                         std::vector<BandColour>(count),
-                         std::vector<BandColour>(count),
-                         std::vector<float>(count),
-                         {},
+                        points.scatterers,
+                        media,
+                        {bands, CodedRows(count, bands * kRowTexels),
+                         std::vector<BandColour>(count), std::vector<BandColour>(count),
+                         std::vector<float>(count), std::move(points.media),
                          CodedRows(0, bands * kRowTexels)}};
     rays += light_all(field);
     return std::move(field.light);

@@ -4,10 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "bake/exchange/bounce_tree.h"
+#include "bake/exchange/exchange_points.h"
 #include "bake/exchange/medium_answer.h"
-#include "bake/exchange/scatterers.h"
-#include "bake/plan/effect.h"
 #include "bake/transport/coded_rows.h"
 
 namespace opaline::bake {
@@ -30,8 +28,10 @@ struct ScattererLight {
 /// seen.
 float even_share(std::span<const float> plane);
 
-/// Traces rays to the environment; sets Scatterer::openness. Counts `rays`.
-ScattererLight light_scatterers(const LightInputs& inputs, std::span<Scatterer> scatterers,
-                                std::uint32_t bands, std::uint64_t& rays);
+/// Traces rays to the environment; sets Scatterer::openness and takes the media of `points`, whose
+/// rows are `media`. Counts `rays`.
+ScattererLight light_scatterers(const LightInputs& inputs, ExchangePoints& points,
+                                std::span<const MediumRows> media, std::uint32_t bands,
+                                std::uint64_t& rays);
 
 }  // namespace opaline::bake

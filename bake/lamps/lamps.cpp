@@ -39,9 +39,7 @@ bool is_taken(const std::vector<Lamp>& lamps, std::string_view name) {
 }
 
 Lamp& add_lamp(std::vector<Lamp>& lamps, const std::string& wanted) {
-    std::string name =
-        free_emitter_name(wanted, [&](std::string_view taken) { return is_taken(lamps, taken); });
-    return lamps.emplace_back(Lamp{.name = std::move(name)});
+    return lamps.emplace_back(Lamp{.name = free_emitter_name(wanted, names_of(lamps))});
 }
 
 std::vector<Lamp> list_ungrouped_lamps(const formats::Scene& scene) {
@@ -110,12 +108,19 @@ formats::Status check_groups(const formats::Scene& scene) {
 
 }  // namespace
 
-std::string free_emitter_name(const std::string& wanted,
-                              const std::function<bool(std::string_view)>& is_taken) {
+std::vector<std::string> names_of(std::span<const Lamp> lamps) {
+    std::vector<std::string> names;
+    for (const Lamp& lamp : lamps) {
+        names.push_back(lamp.name);
+    }
+    return names;
+}
+
+std::string free_emitter_name(const std::string& wanted, std::span<const std::string> taken) {
     constexpr std::size_t kSuffix = 16;
     const std::string base = clean_name(wanted, formats::kMaxEmitterName - kSuffix);
     std::string name = base;
-    for (int i = 2; is_taken(name); ++i) {
+    for (int i = 2; std::ranges::count(taken, name) > 0; ++i) {
         name = base + " (" + std::to_string(i) + ")";
     }
     return name;

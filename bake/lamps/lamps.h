@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,9 +25,10 @@ struct Lamp {
 /// unique: "Lamp", "Lamp (2)". Those of a group are one, in the place of its first one.
 std::vector<Lamp> list_lamps(const formats::Scene& scene);
 
-/// A name as a file takes it that differs from those for which is_taken(name): "fire", "fire (2)".
-std::string free_emitter_name(const std::string& wanted,
-                              const std::function<bool(std::string_view)>& is_taken);
+/// A name as a file takes it that differs from those that are taken: "fire", "fire (2)".
+std::string free_emitter_name(const std::string& wanted, std::span<const std::string> taken);
+
+std::vector<std::string> names_of(std::span<const Lamp> lamps);
 
 /// Emitters of a file with these lamps, where `glowing` volumes are emitters, some of them lamps.
 std::size_t count_emitters(std::span<const Lamp> lamps, std::size_t glowing);

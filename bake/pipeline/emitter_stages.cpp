@@ -14,70 +14,15 @@
 #include "bake/emitters/emitter_knobs.h"
 #include "bake/emitters/light_media.h"
 #include "bake/emitters/media_patches.h"
-#include "bake/pipeline/shared_light.h"
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/stage_work.h"
-#include "bake/rows/gather_rows.h"
+#include "bake/rows/medium_rows.h"
 #include "bake/rows/subject_states.h"
 #include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 namespace {
-
-// Those of the coarsest preset, but for what the user gave.
-Knobs coarse_of(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size) {
-    Knobs coarse = coarse_knobs(effects, knobs, cubemap_size);
-    for (const KnobSpec* knob : knobs.given) {
-        coarse.set(*knob, knobs[*knob]);
-    }
-    return coarse;
-}
-
-// Whether any effect turns light that replaces the environment into rows of a material.
-bool takes_other_light(const EffectTable& effects, std::span<const PlanEntry> decisions,
-                       const RowLayout& layout) {
-    return layout.translucent && layout.constant &&
-           std::ranges::any_of(effects.effects, [&](const EffectDescriptor& effect) {
-               return effect.adds_other_light && effect.gather.add != nullptr &&
-                      acts_on(effect, decisions, layout);
-           });
-}
-
-// The layout of a medium's rows of light that replaces the environment: as in the file, in three
-// bands.
-RowLayout lit_layout(RowLayout layout) {
-    layout.coloured = layout.constant;
-    return layout;
-}
-
-// What the media of a finished bake make of other light, by the effects of its plan: the answer
-// that emitters are baked with. `subjects`: studied; all arguments must outlive the result.
-LightMedium make_light_medium(const BakeInputs& bake, std::span<const PlanEntry> plan,
-                              const Knobs& knobs, const Context& context,
-                              std::vector<SubjectState>& subjects) {
-    return [&bake, plan, &knobs, &context, &subjects](const MediumRequest& request,
-                                                      std::uint64_t& rays) {
-        const auto own = std::ranges::find(subjects, request.material, &SubjectState::material);
-        if (own == subjects.end() ||
-            !takes_other_light(bake.effects, entries_of(plan, request.material), own->layout)) {
-            return std::vector<std::vector<float>>();
-        }
-        BakeInputs lit = bake;
-        lit.light = &request.light;
-        Knobs chosen =
-            request.is_coarse ? coarse_of(bake.effects, knobs, request.cubemap_size) : knobs;
-        chosen.cubemap_size = request.cubemap_size;
-        std::vector<SubjectState> alone;
-        alone.push_back(std::move(*own));
-        settle_subjects(lit, plan, chosen, alone);
-        alone.front().layout = lit_layout(alone.front().layout);
-        auto rows = rows_of_points(lit, chosen, context, alone.front(), request.outside,
-                                   request.inside, rays);
-        *own = std::move(alone.front());
-        return rows;
-    };
-}
 
 // Flights of a particle, mostly: surfaces in a room take it after three or four.
 constexpr double kFlights = 4;
@@ -189,10 +134,10 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                               const Context& context, std::vector<SubjectState>& subjects,
                               BakeResult& result) {
     const std::vector<RowLayout> layouts = layouts_of(bake, subjects);
+    const FinishedMedia finished{bake, result.plan, result.knobs, subjects};
     LitMedia media;
     if (std::ranges::any_of(layouts, &RowLayout::translucent)) {
-        media = {make_light_medium(bake, result.plan, result.knobs, context, subjects), layouts,
-                 result.asset.base_color};
+        media = {&finished, layouts, result.asset.base_color};
     }
     auto baked =
         bake_emitters({bake.scene, bake.rays, bake.receivers, result.asset.primitives, lamps,

@@ -193,10 +193,10 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     settle_subjects(unlit, result.plan, knobs, subjects);
     knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
-    const std::unique_ptr<OtherLight> light =
+    const std::optional<OtherLight> light =
         find_shared_light(unlit, knobs, context, final_layouts(unlit, subjects), subjects, log);
     BakeInputs bake = unlit;
-    bake.light = light.get();
+    bake.light = light ? &*light : nullptr;
     if (knobs.error_target > 0) {
         result.accuracy.emplace();
         knobs = choose_knobs(bake, knobs, context, {subjects, lights, log, *result.accuracy});

@@ -198,10 +198,11 @@ void number_glow(std::span<const Lamp> lamps, BakeResult& result) {
             continue;
         }
         number.push_back(emitters.view().size());
-        append_emitter(emitters,
-                       free_emitter_name(result.glowing_volumes[glow], [&](std::string_view name) {
-                           return find_emitter(emitters.view(), name) < emitters.view().size();
-                       }));
+        std::vector<std::string> taken;
+        for (std::uint32_t e = 0; e < emitters.view().size(); ++e) {
+            taken.emplace_back(emitters.view().name(e));
+        }
+        append_emitter(emitters, free_emitter_name(result.glowing_volumes[glow], taken));
     }
     for (formats::GlowRecord& record : result.asset.volumes.glow.record) {
         record.emitter = number[record.emitter];

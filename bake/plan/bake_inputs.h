@@ -5,12 +5,12 @@
 #include "bake/receivers/receiver.h"
 #include "bake/scene/scene_facts.h"
 #include "bake/scene/texture_pyramid.h"
-#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
+struct OtherLight;  // exchange/other_light.h
 struct EffectTable;
 
 /// What all stages of a bake share, read-only: inspected and placed once, then handed on.
@@ -25,8 +25,6 @@ struct BakeInputs {
     const OtherLight* light = nullptr;
     /// Of textures that what a bake integrates over is filtered by; null: looked up at points.
     const ScenePyramids* textures = nullptr;
-
-    bool has_environment() const { return OtherLight::has_environment(light); }
 };
 
 }  // namespace opaline::bake

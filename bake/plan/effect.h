@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
+#include <glm/glm.hpp>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -58,18 +58,6 @@ struct EffectInputs {
     const formats::Medium& medium() const { return *bake.scene.materials[material].medium; }
     /// Occluders of the material's receivers; empty where nothing blocks their light.
     const RayScene& outside() const { return layout.occluded ? bake.rays : bake.sky; }
-    /// OtherLight::make_truth of light(); empty where there is none.
-    OtherLight::TrueIrradiance true_light(std::span<const TestLight> lights) const {
-        const OtherLight* const other = light();
-        return other != nullptr && other->make_truth ? other->make_truth(lights)
-                                                     : OtherLight::TrueIrradiance();
-    }
-    /// BakeInputs::light, or null where there is none that reaches the material.
-    const OtherLight* light() const {
-        const bool reaches = bake.light != nullptr && (bake.light->unreached.empty() ||
-                                                       bake.light->unreached[material] == 0);
-        return reaches ? bake.light : nullptr;
-    }
 };
 
 /// A step that runs once for a subject, before its rows. `run` null: the effect has none.
@@ -115,6 +103,13 @@ struct TruthStep {
     Work (*work)(const SubjectCost& cost, TruthEffort effort) = nullptr;
 };
 
+/// A straight look at whatever surface is there.
+struct SurfaceView {
+    glm::vec3 origin{0}, direction{0};  ///< [m], clear of the surface it starts at; unit
+    std::array<float, 3> weight{};      ///< of what is seen, by band of the rows
+    std::span<const float> factor{};    ///< of each row
+};
+
 /// Where light comes from that crosses a medium straight to a point of its boundary from surfaces.
 struct CrossingViews {
     /// Weights: share of the radiosity of what is seen that is radiosity of the point, but for the
@@ -122,8 +117,6 @@ struct CrossingViews {
     std::vector<SurfaceView> views;
     double solid_angle = 0;  ///< [sr] of each
 };
-/// Counts `rays`. Any thread.
-using LookThrough = std::function<CrossingViews(const BodyPoint& point, std::uint64_t& rays)>;
 
 /// Work of an effect that lights all surfaces at once.
 struct LightWork {
@@ -140,20 +133,6 @@ struct LightInputs {
     const Context& context;
     std::span<const RowLayout> layouts;  ///< by material
     std::vector<std::uint8_t> acts;      ///< by material: whether the effect does
-    /// Rows of points of one medium, coarsely: T_k, terms * bands * 6 n n Haar coefficients each,
-    /// n = `cubemap_size`, of light of the environment that crosses it straight from beyond.
-    std::function<std::vector<std::vector<float>>(
-        std::uint32_t material, std::span<const Receiver> outside,
-        std::span<const BodyPoint> inside, std::uint32_t cubemap_size)>
-        crossing_rows{};
-    /// The same of what the medium scatters of `light`, which is without the environment. Empty
-    /// where no effect turns such light into rows.
-    std::function<std::vector<std::vector<float>>(
-        std::uint32_t material, const OtherLight& light, std::span<const Receiver> outside,
-        std::span<const BodyPoint> inside, std::uint32_t cubemap_size)>
-        answer_of_medium{};
-    /// Empty where no light crosses the medium straight.
-    std::function<LookThrough(std::uint32_t material)> look_through{};
     std::uint32_t rays_of_receiver = 0;  ///< to other surfaces, as the effect asks for
 };
 
@@ -177,10 +156,9 @@ struct EffectDescriptor {
     PreparationStep prepare{};  ///< after every knob has its value
     GatherStep gather{};
     TruthStep truth{};
-    /// Finds the light that the effect makes arrive at surfaces (BakeInputs::light), once for the
-    /// bake, before samples. Null: it makes none. The result may be null: there is none.
-    std::unique_ptr<OtherLight> (*make_light)(const LightInputs& inputs,
-                                              std::uint64_t& rays) = nullptr;
+    /// Rays of a receiver to other surfaces, of the effect that has light go from surface to
+    /// surface (exchange/; BakeInputs::light). Null: it does not.
+    std::uint32_t (*exchange_rays)(const Knobs& knobs) = nullptr;
     LightWork (*light_work)(const CostInput& input) = nullptr;
     bool reads_openness = false;
     /// It adds BakeInputs::light to its rows. Where that replaces the environment, no other acts.
@@ -200,8 +178,11 @@ struct EffectDescriptor {
     /// by band.
     void (*add_at_entry)(const EffectInputs& inputs,
                          std::span<std::vector<double>> factor) = nullptr;
-    /// Its light comes straight from beyond the medium: from which surfaces. Null: it does not.
-    LookThrough (*make_look_through)(const EffectInputs& inputs) = nullptr;
+    /// Its light comes straight from beyond the medium: from which surfaces, to each of the points.
+    /// Null: it does not.
+    std::vector<CrossingViews> (*look_through)(const EffectInputs& inputs,
+                                               std::span<const BodyPoint> points,
+                                               std::uint64_t& rays) = nullptr;
     /// Colour that replaces the base colour's own, of a medium shown as a surface.
     formats::Rgb (*tint)(const Prepared& study) = nullptr;
     /// Whether it takes media for homogeneous, as these knobs ask for. Null: never.

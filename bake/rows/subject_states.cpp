@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include "bake/exchange/other_light.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -39,8 +41,9 @@ void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, co
             const EffectDescriptor& effect = bake.effects.effects[e];
             // Where light leaves at its entry, one effect adds the row, and others scale it.
             const bool helps = state.layout.at_entry && effect.add_at_entry != nullptr;
-            state.effects[e].acts = acts_on(effect, decisions, state.layout) &&
-                                    (bake.has_environment() || effect.adds_other_light || helps);
+            state.effects[e].acts =
+                acts_on(effect, decisions, state.layout) &&
+                (has_environment(bake.light) || effect.adds_other_light || helps);
         }
     }
 }

@@ -217,9 +217,9 @@ void compare(const World& w, const World& fine, std::uint32_t n) {
     options.effects = {"direct", "interreflection"};
     std::uint64_t rays = 0;
     const Knobs knobs = resolve_knobs(options).value();
-    const auto light = find_bounce_light(
-        {w.bake, knobs, w.context, w.layouts, {}, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])},
-        rays);
+    const LightInputs asked{w.bake,    knobs, w.context,
+                            w.layouts, {},    count_bounce_rays(knobs[kBounceRays])};
+    const auto light = solve_exchange(asked, place_exchange(asked, rays), {}, rays);
     // Error, and of that what rays of other seeds share: errors of the look-up and of scatterers.
     constexpr std::uint64_t kSeeds = 8;
     const BounceGrid cut = make_cut_grid(n);

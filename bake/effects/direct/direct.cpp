@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <optional>
 #include <vector>
 
-#include "bake/plan/add_other_light.h"
+#include "bake/exchange/other_light.h"
 #include "bake/plan/stage_work.h"
 #include "bake/receivers/other_side.h"
 #include "bake/scene/coverage.h"
@@ -79,7 +80,7 @@ struct Directions : Prepared {
 
 PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     auto directions = std::make_unique<Directions>();
-    if (inputs.bake.has_environment()) {
+    if (has_environment(inputs.bake.light)) {
         directions->set = make_direction_set(inputs.knobs.cubemap_size);
     }
     return directions;
@@ -112,11 +113,11 @@ std::uint64_t add_side(const EffectInputs& inputs, const Receiver& receiver, std
                        const DenseRow& row) {
     constexpr float kShare = std::numbers::inv_pi_v<float>;
     std::uint64_t rays = 0;
-    if (inputs.bake.has_environment() && !is_of_metal(inputs)) {
+    if (has_environment(inputs.bake.light) && !is_of_metal(inputs)) {
         rays += add_environment(inputs, receiver, term, row);
     }
     return rays +
-           add_other_light(inputs.light(), receiver, {{term, {kShare, kShare, kShare}}}, row);
+           add_other_light(light_of(inputs), receiver, {{term, {kShare, kShare, kShare}}}, row);
 }
 
 bool has_two_sides(const EffectInputs& inputs) {
@@ -133,13 +134,13 @@ std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, co
 
 struct Truth : Prepared {
     ReflectionTruth truth;
-    OtherLight::TrueIrradiance other;
+    std::optional<BounceTruth> other;
 };
 
 PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
     truth->truth = make_reflection_truth(lights);
-    truth->other = inputs.true_light(lights);
+    truth->other = true_light_of(inputs, lights);
     return truth;
 }
 

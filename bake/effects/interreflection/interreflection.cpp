@@ -10,7 +10,6 @@
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/scatterers.h"
-#include "bake/exchange/true_bounces.h"
 #include "bake/plan/effect.h"
 #include "formats/opal/cubemap.h"
 
@@ -100,43 +99,6 @@ constexpr std::array<DecisionRule, 2> kRules{
       [](const PlanEntry& entry, RowLayout& layout) { layout.filtered = entry.on; }}}};
 constexpr std::array<const KnobSpec*, 1> kKnobs{&kBounceRays};
 
-std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t& rays) {
-    LightInputs wanted = inputs;
-    wanted.rays_of_receiver = rays_of_receiver(inputs.knobs);
-    const std::shared_ptr<const BounceLight> bounced = find_bounce_light(wanted, rays);
-    if (!bounced) return nullptr;
-    auto light = std::make_unique<OtherLight>();
-    light->bands = bounced->bands;
-    light->name = "interreflection";
-    light->make_truth = [bounced](std::span<const TestLight> lights) {
-        const auto truth = std::make_shared<const BounceTruth>(make_bounce_truth(bounced, lights));
-        return [truth](const Receiver& at, std::uint64_t key, std::uint32_t count,
-                       std::span<double> irradiance) {
-            return add_true_bounces(*truth, at, key, count, irradiance);
-        };
-    };
-    light->add_seen = [bounced](std::span<const SurfaceView> views, double solid_angle,
-                                std::uint32_t cubemap_size, std::uint32_t bands,
-                                std::span<float> rows) {
-        return add_seen_light(*bounced, views, solid_angle, cubemap_size, bands, rows);
-    };
-    light->make_seen_truth = [bounced](std::span<const TestLight> lights) {
-        const auto truth = std::make_shared<const BounceTruth>(make_bounce_truth(bounced, lights));
-        return [truth](const Receiver& along, formats::Rgb weight, std::uint64_t key,
-                       std::uint32_t number, std::span<double> luminance) {
-            return add_true_view(*truth, along, weight, key, number, luminance);
-        };
-    };
-    for (const std::uint8_t acts : inputs.acts) {
-        light->unreached.push_back(acts == 0 ? 1 : 0);
-    }
-    light->add = [bounced](const LitPoint& point, std::uint32_t cubemap_size,
-                           std::span<float> rows) {
-        return add_bounced(*bounced, point, cubemap_size, rows);
-    };
-    return light;
-}
-
 constexpr double kCells = 4;  // in the width of the largest
 
 // Nothing rises above its horizon. Of backs the horizon is not known.
@@ -154,7 +116,7 @@ EffectDescriptor describe_interreflection(Effect id) {
             .rules = kRules,
             .knobs = kKnobs,
             .gather = {.work = bounce_rows_work},
-            .make_light = make_light,
+            .exchange_rays = rays_of_receiver,
             .light_work = bounce_light_work,
             .held_light = formats::TermSet::interreflection};
 }

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "bake/plan/add_other_light.h"
+#include "bake/exchange/other_light.h"
 #include "bake/transport/irradiance_transport.h"
 #include "formats/opal/haar.h"
 
@@ -19,7 +19,7 @@ struct Answer : Prepared {
 
 PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     auto answer = std::make_unique<Answer>();
-    if (inputs.bake.has_environment()) {
+    if (has_environment(inputs.bake.light)) {
         answer->directions = make_direction_set(inputs.knobs.cubemap_size);
     }
     std::vector<std::vector<double>> factor(inputs.layout.bands(),
@@ -69,12 +69,12 @@ float mean_factor(std::span<const float> factor) {
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const auto& answer = static_cast<const Answer&>(*inputs.own.prepared);
     const std::uint64_t rays =
-        inputs.bake.has_environment() ? add_environment(inputs, receiver, row) : 0;
+        has_environment(inputs.bake.light) ? add_environment(inputs, receiver, row) : 0;
     OtherLightShare share;
     for (std::size_t band = 0; band < answer.factor.size(); ++band) {
         share.factor[band] = mean_factor(answer.factor[band]);
     }
-    return rays + add_other_light(inputs.light(), receiver.outside, {share}, row);
+    return rays + add_other_light(light_of(inputs), receiver.outside, {share}, row);
 }
 
 }  // namespace

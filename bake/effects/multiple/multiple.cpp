@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "bake/effects/multiple/unfinished_walks.h"
 #include "bake/effects/multiple/view_terms.h"
 #include "bake/effects/multiple/walks/true_walks.h"
+#include "bake/exchange/other_light.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/scene/even_media.h"
 #include "bake/truth/true_irradiance.h"
@@ -127,8 +129,8 @@ double count_served(const EffectInputs& inputs, std::size_t served) {
 
 PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
     const Knobs& knobs = inputs.knobs;
-    const bool walks_alone =
-        !inputs.bake.has_environment() && takes_walks_alone(inputs.medium(), inputs.layout, knobs);
+    const bool walks_alone = !has_environment(inputs.bake.light) &&
+                             takes_walks_alone(inputs.medium(), inputs.layout, knobs);
     const std::vector<BodyPoint> served = served_by(inputs);
     auto samples = std::make_unique<Samples>();
     samples->stage = prepare_multiple(inputs.bake.scene, inputs.outside(), inputs.bake.rays,
@@ -151,7 +153,7 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        inputs.layout.fills_crossed,
                                        inner_materials(inputs),
                                        inputs.layout.layered,
-                                       inputs.light()},
+                                       light_of(inputs)},
                                       inputs.context);
     rays += samples->stage.rays;
     return samples;
@@ -182,7 +184,7 @@ struct Truth : Prepared {
     ExitLobe lobe;
     SunRays suns;
     SmoothLights smooth;
-    OtherLight::TrueIrradiance other;
+    std::optional<BounceTruth> other;
     std::uint32_t points = 0;
 };
 
@@ -206,7 +208,7 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
     }
     truth->suns = make_sun_rays(lights, kRaysPerSun);
     truth->smooth = make_smooth_lights(lights);
-    truth->other = inputs.true_light(lights);
+    truth->other = true_light_of(inputs, lights);
     truth->points = truth_points(effort);
     return truth;
 }
@@ -220,19 +222,19 @@ glm::vec3 seen_of(const EffectInputs& inputs, const TruthReceiver& receiver) {
 TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
                   const TruthReceiver& receiver, std::uint64_t& rays) {
     const auto& truth = static_cast<const Truth&>(prepared);
+    const BounceTruth* const other = truth.other ? &*truth.other : nullptr;
     if (model_of(inputs.own) == MultipleModel::dipole) {
-        return integrate_multiple(truth.integral,
-                                  {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth,
-                                   truth.points, &truth.other},
-                                  receiver.inside.position, {inputs.knobs.seed, receiver.key},
-                                  rays);
+        return integrate_multiple(
+            truth.integral,
+            {inputs.bake.scene, inputs.bake.rays, truth.suns, truth.smooth, truth.points, other},
+            receiver.inside.position, {inputs.knobs.seed, receiver.key}, rays);
     }
     return walk_to_lights(
         truth.space,
         {inputs.bake.rays, truth.suns, truth.smooth, truth.lobe, profile_of(inputs.own).exit,
-         truth.points, seen_of(inputs, receiver), &truth.other},
+         truth.points, seen_of(inputs, receiver), other},
         receiver.inside,
-        {inputs.layout.all_orders ? 1u : 2u, !inputs.layout.all_orders && truth.other,
+        {inputs.layout.all_orders ? 1u : 2u, !inputs.layout.all_orders && other != nullptr,
          inputs.layout.fills_crossed},
         inputs.knobs.seed, receiver.key, rays);
 }

@@ -13,6 +13,7 @@
 #include "bake/effects/multiple/walks/limit_views.h"
 #include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
+#include "bake/exchange/other_light.h"
 #include "bake/plan/knobs.h"
 #include "bake/receivers/surface_samples.h"
 #include "formats/opal/cubemap.h"
@@ -25,7 +26,7 @@ constexpr std::uint32_t kKeptOfLight = 32;
 
 // Entries of a site's rows.
 std::uint32_t kept_of(const MultipleOptions& options) {
-    return OtherLight::has_environment(options.light) ? options.kept : kAllCoefficients;
+    return has_environment(options.light) ? options.kept : kAllCoefficients;
 }
 
 // Of all materials or one.
@@ -257,7 +258,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     } else if (!context.cancelled()) {
         stage.tree = build_cluster_tree(
             samples, std::move(transport), options.cubemap_size, options.kept, context,
-            OtherLight::has_environment(options.light) ? kKeptOfLight : kAllCoefficients);
+            has_environment(options.light) ? kKeptOfLight : kAllCoefficients);
     }
     if (walks && !context.cancelled()) {
         const double all_walks = count_walks(plan, area, options.walks);

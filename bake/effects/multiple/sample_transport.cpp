@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/exchange/other_light.h"
 #include "bake/receivers/kd_order.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/transport/irradiance_transport.h"
@@ -67,7 +68,7 @@ std::size_t count_filled(std::span<const float> dense, std::size_t texels) {
 SampleTransport bake_sample_transport(const RayScene& rays, std::span<const SurfaceSample> samples,
                                       const SampleOptions& options, const Context& context) {
     const std::uint32_t n = options.cubemap_size;
-    const bool environment = OtherLight::has_environment(options.light);
+    const bool environment = has_environment(options.light);
     const SharedDirections directions =
         environment ? make_shared_directions(n) : SharedDirections{};
     const std::vector<float> transmittance = tabulate_transmittance(options.eta);
@@ -108,7 +109,7 @@ SampleTransport bake_sample_transport(const RayScene& rays, std::span<const Surf
     };
     const auto gather_other = [&](std::size_t s, float& all, Part& part) {
         std::vector<float> dense(result.other.bands * texels);
-        part.rays += options.light->add({samples[s].receiver, true}, n, dense);
+        part.rays += add_irradiance(*options.light, {samples[s].receiver, true}, n, dense);
         // Those of the faces come first, whatever they are.
         const std::size_t kept =
             environment ? options.kept_of_light : std::min(texels, count_filled(dense, texels) + 6);

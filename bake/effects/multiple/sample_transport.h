@@ -7,10 +7,11 @@
 #include "bake/base/context.h"
 #include "bake/effects/multiple/walks/sparse_vectors.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 
 namespace opaline::bake {
+
+struct OtherLight;  // exchange/other_light.h
 
 /// Light that enters a medium through its surface samples, E(x, w) = Ft(eta, n.w) V(x, w) max(0,
 /// n.w) ([Wang2005] eq. (8)): the same for all bands. Other light enters as diffuse light does.

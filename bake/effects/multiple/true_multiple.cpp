@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "bake/base/rng.h"
+#include "bake/exchange/true_bounces.h"
 #include "bake/receivers/surface_samples.h"
 
 namespace opaline::bake {
@@ -153,10 +154,10 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLi
             traced += add_sun_irradiance(rays, suns, sample.receiver, integral.eta, irradiance);
             traced += add_smooth_irradiance(rays, smooth, sample.receiver, integral.eta,
                                             {u[2], u[3]}, irradiance);
-            if (other != nullptr && *other) {
+            if (other != nullptr) {
                 std::ranges::fill(diffuse, 0.0);
-                traced +=
-                    (*other)(sample.receiver, std::uint64_t{receiver} << 32 | drawn, 1, diffuse);
+                traced += add_true_bounces(*other, sample.receiver,
+                                           std::uint64_t{receiver} << 32 | drawn, 1, diffuse);
                 const double entering = 1 / (std::numbers::pi * integral.scale);
                 for (std::size_t l = 0; l < lights; ++l) {
                     irradiance[l] += entering * diffuse[l];

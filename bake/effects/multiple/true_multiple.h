@@ -7,13 +7,14 @@
 
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/receivers/surface_points.h"
-#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/truth/luminance.h"
 #include "bake/truth/true_irradiance.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+struct BounceTruth;  // exchange/true_bounces.h
 
 /// Monte Carlo estimate of the diffusion integral over a medium's surface, with its own points and
 /// rays: no samples, tree, cube map or wavelets of the bake.
@@ -40,8 +41,8 @@ struct SurfaceLight {
     const SunRays& suns;
     const SmoothLights& smooth;
     std::uint32_t points = 0;  ///< of the surface, for each of the two estimates
-    /// Of other light, which enters as diffuse light does; null or empty: there is none.
-    const OtherLight::TrueIrradiance* other = nullptr;
+    /// Of other light, which enters as diffuse light does; null: there is none.
+    const BounceTruth* other = nullptr;
 };
 
 /// Keys of the random numbers.

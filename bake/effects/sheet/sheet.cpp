@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "bake/plan/add_other_light.h"
+#include "bake/exchange/other_light.h"
 #include "bake/receivers/other_side.h"
 #include "bake/scene/coverage.h"
 #include "bake/transport/irradiance_transport.h"
@@ -50,7 +51,7 @@ struct Directions : Prepared {
 
 PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
     auto directions = std::make_unique<Directions>();
-    if (inputs.bake.has_environment()) {
+    if (has_environment(inputs.bake.light)) {
         directions->set = make_direction_set(inputs.knobs.cubemap_size);
     }
     return directions;
@@ -99,27 +100,28 @@ OtherLightShare share_of(formats::Rgb c, std::uint32_t term, std::uint32_t bands
 }
 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
-    std::uint64_t rays = inputs.bake.has_environment() ? add_environment(inputs, receiver, row) : 0;
+    std::uint64_t rays =
+        has_environment(inputs.bake.light) ? add_environment(inputs, receiver, row) : 0;
     const formats::Sheet& sheet = sheet_of(inputs);
     const auto share = [&](formats::Rgb c, std::uint32_t term) {
         return share_of(c, term, row.bands);
     };
-    rays += add_other_light(inputs.light(), receiver.outside,
+    rays += add_other_light(light_of(inputs), receiver.outside,
                             {share(sheet.reflect, 0), share(sheet.transmit, 1)}, row);
-    rays += add_other_light(inputs.light(), other_side(receiver.outside, receiver.inside),
+    rays += add_other_light(light_of(inputs), other_side(receiver.outside, receiver.inside),
                             {share(sheet.transmit, 0), share(sheet.reflect, 1)}, row);
     return rays;
 }
 
 struct Truth : Prepared {
     ReflectionTruth truth;
-    OtherLight::TrueIrradiance other;
+    std::optional<BounceTruth> other;
 };
 
 PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
     truth->truth = make_reflection_truth(lights);
-    truth->other = inputs.true_light(lights);
+    truth->other = true_light_of(inputs, lights);
     return truth;
 }
 

@@ -179,13 +179,13 @@ std::uint32_t straight_terms(const RowLayout& layout) {
 
 std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
                            const RowLayout& layout, const DenseRow& row,
-                           const OtherLight* surfaces) {
+                           const BounceLight* surfaces) {
     if (point.normal == glm::vec3(0)) return 0;
     std::uint64_t rays = 0;
     const PointViews own = follow_enough(body, point, views, rays);
     const auto& set = own.set;
     const auto& found = own.found;
-    const bool sees_surfaces = surfaces != nullptr && surfaces->add_seen && !found.blocked.empty();
+    const bool sees_surfaces = surfaces != nullptr && !found.blocked.empty();
     if (found.exits.empty() && !sees_surfaces) return rays;
     const std::uint32_t terms = straight_terms(layout);
     std::vector<float> factors = fit_views(set, terms);
@@ -225,8 +225,8 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         for (const StraightExit& exit : found.blocked) {
             looks.push_back({exit.origin, exit.direction, exit.weight, factors_of(exit)});
         }
-        rays += surfaces->add_seen(looks, solid_angle_of(views), row.cubemap_size, row.bands,
-                                   row.values);
+        rays += add_seen_light(*surfaces, looks, solid_angle_of(views), row.cubemap_size, row.bands,
+                               row.values);
     }
     return rays;
 }

@@ -3,9 +3,9 @@
 #include <cstdint>
 
 #include "bake/effects/transmission/straight_paths.h"
+#include "bake/exchange/bounce_light.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/row_layout.h"
-#include "bake/transport/other_light.h"
 
 namespace opaline::bake {
 
@@ -24,10 +24,10 @@ inline constexpr std::uint32_t kFinerViews = 4;
 /// sky; null: they are black. Any thread; returns the rays traced.
 std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
                            const RowLayout& layout, const DenseRow& row,
-                           const OtherLight* surfaces = nullptr);
+                           const BounceLight* surfaces = nullptr);
 
 /// The surfaces from which light crosses the body straight to a point, by `views` of it, as of
-/// EffectDescriptor::make_look_through. Counts `rays`.
+/// EffectDescriptor::look_through. Counts `rays`.
 CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std::uint32_t views,
                            std::uint64_t& rays);
 

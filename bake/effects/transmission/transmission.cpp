@@ -5,19 +5,21 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "bake/base/frame.h"
+#include "bake/base/ordered_parallel.h"
 #include "bake/base/rng.h"
 #include "bake/effects/transmission/rules_transmission.h"
 #include "bake/effects/transmission/straight_paths.h"
 #include "bake/effects/transmission/straight_rows.h"
 #include "bake/effects/transmission/view_fit.h"
+#include "bake/exchange/other_light.h"
 #include "bake/plan/stage_work.h"
 #include "bake/scattering/fresnel.h"
-#include "bake/transport/other_light.h"
 #include "bake/truth/luminance.h"
 #include "bake/truth/true_irradiance.h"
 #include "formats/opal/cubemap.h"
@@ -31,8 +33,8 @@ struct StraightTruth {
     SmoothLights smooth;
     std::uint32_t views = 0;  //< for each of the two estimates
     std::uint32_t terms = 1;  //< harmonics of the view
-    // What surfaces send that stand before the sky; empty: they are black.
-    OtherLight::TrueView surfaces{};
+    // What surfaces send that stand before the sky; none: they are black.
+    std::optional<BounceTruth> surfaces{};
 };
 
 constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
@@ -79,7 +81,7 @@ std::uint64_t add_surface(const StraightTruth& truth, const StraightExit& exit, 
     const formats::Rgb share{exit.weight[0], exit.weight[bands == 1 ? 0 : 1],
                              exit.weight[bands == 1 ? 0 : 2]};
     const std::uint64_t rays =
-        truth.surfaces({exit.origin, exit.direction}, share, key, number, seen);
+        add_true_view(*truth.surfaces, {exit.origin, exit.direction}, share, key, number, seen);
     for (std::size_t l = 0; l < sum.size(); ++l) {
         sum[l] += weight * seen[l];
     }
@@ -199,15 +201,28 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
 }
 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
+    const OtherLight* const light = light_of(inputs);
     return add_straight(static_cast<const Body&>(*inputs.own.prepared).body, receiver.inside,
-                        whole(inputs.knobs, kStraightViews), inputs.layout, row, inputs.light());
+                        whole(inputs.knobs, kStraightViews), inputs.layout, row,
+                        light != nullptr ? light->surfaces.get() : nullptr);
 }
 
-LookThrough make_look_through(const EffectInputs& inputs) {
-    return [body = make_straight_body(inputs), views = whole(inputs.knobs, kStraightViews)](
-               const BodyPoint& point, std::uint64_t& rays) {
-        return look_through(body, point, views, rays);
-    };
+std::vector<CrossingViews> look_from_all(const EffectInputs& inputs,
+                                         std::span<const BodyPoint> points, std::uint64_t& rays) {
+    const StraightBody body = make_straight_body(inputs);
+    const std::uint32_t views = whole(inputs.knobs, kStraightViews);
+    std::vector<CrossingViews> seen(points.size());
+    for_each_block_in_order(
+        points.size(), 16, inputs.context,
+        [&](Range range) {
+            std::uint64_t traced = 0;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                seen[i] = look_through(body, points[i], views, traced);
+            }
+            return traced;
+        },
+        [&](Range, std::uint64_t traced) { rays += traced; });
+    return seen;
 }
 
 struct Truth : Prepared {
@@ -226,11 +241,7 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
     truth->body = make_straight_body(inputs);
     truth->body.sky = &inputs.bake.rays;  // whatever the plan says of what stands before the light
     truth->truth = {lights, make_smooth_lights(lights), truth_views(effort),
-                    straight_terms(inputs.layout)};
-    if (const OtherLight* const light = inputs.light();
-        light != nullptr && light->make_seen_truth) {
-        truth->truth.surfaces = light->make_seen_truth(lights);
-    }
+                    straight_terms(inputs.layout), true_light_of(inputs, lights)};
     return truth;
 }
 
@@ -284,7 +295,7 @@ EffectDescriptor describe_transmission(Effect id) {
                               return straight_truth_work(cost, 2.0 * truth_views(effort));
                           }},
             .held_light = formats::TermSet::unscattered,
-            .make_look_through = make_look_through,
+            .look_through = look_from_all,
             .warn_of_plan = warn_of_reach,
             .warn_of_model = warn_of_model};
 }

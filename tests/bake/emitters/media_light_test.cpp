@@ -8,6 +8,7 @@
 
 #include "bake/emitters/light_media.h"
 #include "bake/emitters/media_patches.h"
+#include "bake/exchange/other_light.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 
 namespace opaline::bake {
@@ -47,7 +48,8 @@ TEST(MediaLight, IsMixedOverTrianglesAndStartsWithItsPower) {
     EXPECT_TRUE(MediaLight{{{}}}.empty());
 }
 
-// The light of a lamp stands in its column, red, green and blue apart.
+// The light of a lamp stands in its column, red, green and blue apart. Rows take their share of
+// each band, and grey ones the luminance.
 TEST(MediaLight, ColumnsHoldIrradiance) {
     formats::Scene scene = square_of_wax();
     scene.lights.push_back({.name = "A", .intensity = {1, 2, 3}, .position = {1, 1, 2}});
@@ -57,10 +59,11 @@ TEST(MediaLight, ColumnsHoldIrradiance) {
     const ElementLayout layout(scene, 1);
     const std::vector<ElementLight> nothing(2);
     const LampLight light{scene, rays, sources, layout, nothing, 16, 0};
-    const OtherLight columns = make_lamp_columns(light);
-    EXPECT_FALSE(columns.environment);
+    const OtherLight columns{.lamps = &light, .environment = false};
+    EXPECT_FALSE(has_environment(&columns));
     std::vector<float> rows(18);
-    columns.add({{{1, 1, 0.001f}, {0, 0, 1}}}, 1, rows);
+    const Receiver at{{1, 1, 0.001f}, {0, 0, 1}};
+    add_irradiance(columns, {at}, 1, rows);
     const float E = 1 / (1.999f * 1.999f);
     EXPECT_NEAR(rows[0], E, 1e-4);
     EXPECT_NEAR(rows[1], 8 * E, 1e-3);
@@ -68,6 +71,17 @@ TEST(MediaLight, ColumnsHoldIrradiance) {
     EXPECT_NEAR(rows[12], 3 * E, 1e-3);
     EXPECT_EQ(rows[7], 0);
     EXPECT_EQ(rows[2], 0);
+    for (const std::uint32_t bands : {1u, 3u}) {
+        std::vector<float> values(2 * bands * 6);
+        const DenseRow row{values, 1, 2, bands};
+        add_other_light(&columns, at, {{0, {0.5f, 0.5f, 0.5f}}, {1, {1, 1, 1}}}, row);
+        for (std::uint32_t b = 0; b < bands; ++b) {
+            const float all = bands == 1 ? 0.2126f + 2 * 0.7152f + 3 * 0.0722f : 1 + b;
+            EXPECT_NEAR(row.plane(0, b)[0], 0.5f * all * E, 1e-4);
+            EXPECT_NEAR(row.plane(1, b)[0], all * E, 1e-4);
+            EXPECT_EQ(row.plane(0, b)[2], 0);
+        }
+    }
 }
 
 // Two sheets of points a hundredth of their width apart that face away from each other.

@@ -40,8 +40,8 @@ struct LitWorld : tests::LitScene {
         options.effects = {"direct", "interreflection"};
         std::uint64_t traced = 0;
         const Knobs knobs = resolve_knobs(options).value();
-        light = find_bounce_light(
-            {bake, knobs, {}, rows, {}, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])}, traced);
+        const LightInputs asked{bake, knobs, {}, rows, {}, count_bounce_rays(knobs[kBounceRays])};
+        light = solve_exchange(asked, place_exchange(asked, traced), {}, traced);
     }
 
     std::vector<RowLayout> rows = layouts();

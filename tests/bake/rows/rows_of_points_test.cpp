@@ -6,8 +6,9 @@
 
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/exchange/other_light.h"
 #include "bake/scene/inspect_scene.h"
-#include "formats/opal/cubemap.h"
+#include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/bake/single/single_support.h"
 #include "tests/support/effects.h"
 
@@ -28,15 +29,14 @@ TEST(RowsOfPoints, AreLinearInLightThatReplacesTheEnvironment) {
     const SceneFacts facts = inspect_scene(setup.scene);
     const std::vector<ReceiverSet> sets = tests::receivers_of(setup);
     const auto sky = RayScene::build({}, 1);
-    OtherLight light;
-    light.environment = false;
-    light.add = [](const LitPoint&, std::uint32_t n, std::span<float> rows) {
-        const std::size_t texels = formats::cubemap_texels(n);
-        rows[0] += 1;
-        rows[3] += 2;
-        rows[texels + 3] += 4;
-        return std::uint64_t{7};
-    };
+    formats::Scene lamps = setup.scene;
+    lamps.lights = {{.name = "red", .intensity = {1, 0, 0}, .position = {0, 0, 5}},
+                    {.name = "green", .intensity = {2, 4, 0}, .position = {0, 0, 5}}};
+    const auto sources = tests::all_sources(lamps);
+    const ElementLayout layout(lamps, 1);
+    const std::vector<ElementLight> nothing(2);
+    const LampLight lamp_light{lamps, setup.rays, sources, layout, nothing, 16, 0};
+    const OtherLight light{.lamps = &lamp_light, .environment = false};
     BakeInputs bake{all_effects(), setup.scene, facts, setup.rays, *sky, sets, &light};
     const std::vector<PlanEntry> plan = plan_bake(setup.scene, facts, knobs);
     std::vector<SubjectState> subjects = begin_subjects(bake, plan, knobs);
@@ -53,9 +53,9 @@ TEST(RowsOfPoints, AreLinearInLightThatReplacesTheEnvironment) {
     for (const std::vector<float>& row : rows) {
         ASSERT_EQ(row.size(), subjects[0].layout.terms() * 3 * 6u);
         EXPECT_GT(row[0], 0);
-        EXPECT_NEAR(row[3], 2 * row[0], 1e-4f * row[0]);
-        EXPECT_NEAR(row[6 + 3], 4 * row[0], 1e-3f * row[0]) << "the medium is grey";
-        EXPECT_EQ(row[1], 0);
+        EXPECT_NEAR(row[1], 2 * row[0], 1e-4f * row[0]);
+        EXPECT_NEAR(row[6 + 1], 4 * row[0], 1e-3f * row[0]) << "the medium is grey";
+        EXPECT_EQ(row[2], 0);
         EXPECT_EQ(row[6], 0);
     }
     EXPECT_TRUE(std::ranges::all_of(subjects[0].effects, [](const EffectState& effect) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bake/effects/multiple/walks/walk.h"
+#include "bake/exchange/true_bounces.h"
 #include "bake/receivers/surface_samples.h"
 
 namespace opaline::bake {
@@ -112,9 +113,10 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
             if (!exit->is_once) {
                 traced += add_light(light, at, *exit, u, irradiance);
             }
-            if (light.other != nullptr && *light.other) {
+            if (light.other != nullptr) {
                 std::ranges::fill(diffuse, 0.0);
-                traced += (*light.other)(at.receiver, std::uint64_t{key} << 32 | walk, 1, diffuse);
+                traced += add_true_bounces(*light.other, at.receiver,
+                                           std::uint64_t{key} << 32 | walk, 1, diffuse);
                 for (std::size_t l = 0; l < lights; ++l) {
                     irradiance[l] += light.escape * diffuse[l];
                 }

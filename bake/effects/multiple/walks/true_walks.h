@@ -5,12 +5,13 @@
 #include "bake/effects/multiple/walks/exit_lobe.h"
 #include "bake/effects/multiple/walks/walk_space.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/other_light.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/truth/luminance.h"
 #include "bake/truth/true_irradiance.h"
 
 namespace opaline::bake {
+
+struct BounceTruth;  // exchange/true_bounces.h
 
 /// What the walks of a receiver see of their surroundings.
 struct WalkLight {
@@ -21,8 +22,8 @@ struct WalkLight {
     double escape = 1;        ///< c_exit
     std::uint32_t walks = 0;  ///< for each of the two estimates
     glm::vec3 seen{0};        ///< unit, inside, toward the eye; 0: the mean over all views
-    /// Of other light, which enters as diffuse light does; null or empty: there is none.
-    const OtherLight::TrueIrradiance* other = nullptr;
+    /// Of other light, which enters as diffuse light does; null: there is none.
+    const BounceTruth* other = nullptr;
 };
 
 /// Luminance that leaves the surface at a receiver toward its normal, less the factor F_t, by light

@@ -5,9 +5,6 @@
 #include <cstddef>
 #include <numbers>
 
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
-
 namespace opaline::bake {
 namespace {
 
@@ -18,21 +15,6 @@ double legendre_2(double c) {
 }
 
 }  // namespace
-
-double mean_over_views(double eta, const std::function<double(double, double)>& function) {
-    const GaussLegendre rule = make_gauss_legendre(64);
-    // Below eta = 1 nothing enters beyond the critical angle; the rule covers the rest.
-    const double least = eta < 1 ? std::sqrt(1 - eta * eta) : 0;
-    double sum = 0, all = 0;
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-        const double c = least + (1 - least) * rule.node[i];
-        const double p = rule.weight[i] * c * fresnel_transmittance(c, eta);
-        const double inside = refracted_cosine(c, eta);
-        all += p;
-        sum += p * function(inside, 1 - inside * inside);
-    }
-    return sum / all;
-}
 
 ViewFit make_view_fit(double eta) {
     const auto mean_of = [eta](const auto& function) { return mean_over_views(eta, function); };

@@ -1,9 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <glm/glm.hpp>
+
+#include "bake/scattering/fresnel.h"
+#include "bake/scattering/gauss_legendre.h"
 
 namespace opaline::bake {
 
@@ -31,7 +35,21 @@ struct ViewFit {
 };
 
 /// The mean under p of a function of c' and s^2, by quadrature. `eta` > 0 of the boundary.
-double mean_over_views(double eta, const std::function<double(double, double)>& function);
+template <class Function>
+double mean_over_views(double eta, Function&& function) {
+    const GaussLegendre rule = make_gauss_legendre(64);
+    // Below eta = 1 nothing enters beyond the critical angle; the rule covers the rest.
+    const double least = eta < 1 ? std::sqrt(1 - eta * eta) : 0;
+    double sum = 0, all = 0;
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+        const double c = least + (1 - least) * rule.node[i];
+        const double p = rule.weight[i] * c * fresnel_transmittance(c, eta);
+        const double inside = refracted_cosine(c, eta);
+        all += p;
+        sum += p * function(inside, 1 - inside * inside);
+    }
+    return sum / all;
+}
 
 /// `eta` > 0.
 ViewFit make_view_fit(double eta);

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "bake/exchange/bounce_tree.h"
+#include "bake/exchange/medium_answer.h"
+#include "bake/exchange/patch_light.h"
+#include "bake/exchange/scatterers.h"
+#include "bake/plan/effect.h"
+
+namespace opaline::bake {
+
+/// Where light is looked for that surfaces send to each other.
+struct ExchangePoints {
+    std::vector<Scatterer> scatterers;   ///< none where receivers see no surface
+    std::vector<MediumAnswer> media{};   ///< those that scatterers lie on; their shares are 0
+    std::optional<BounceTree> tree{};    ///< of scatterers, without rows, where there are media
+    std::vector<std::uint32_t> patch{};  ///< of scatterers that lie on media
+
+    std::uint32_t material_of(const MediumAnswer& medium) const {
+        return scatterers[medium.members.front()].material;
+    }
+    /// Irradiance 1 on one patch of a medium at a time. The points must outlive it.
+    PatchLight light_of(const MediumAnswer& medium) const {
+        return {PatchLight::Scatterers{scatterers, *tree, medium.members}, patch};
+    }
+};
+
+/// Counts `rays`.
+ExchangePoints place_exchange(const LightInputs& inputs, std::uint64_t& rays);
+
+/// What effects say of one medium, at its members in their order. All may be empty.
+struct MediumRows {
+    /// T_k, terms * bands * 6 n n values each, n = kBounceCubemap: of light on one patch at a time
+    /// what it scatters, and of the environment's what crosses it straight.
+    std::vector<std::vector<float>> scattered, crossing;
+    std::vector<CrossingViews> through;  ///< which surfaces are seen where that crosses
+};
+
+}  // namespace opaline::bake
