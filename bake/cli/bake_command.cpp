@@ -91,11 +91,9 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
 }
 
 void print_stages(const bake::BakeResult& result) {
-    for (const auto* plan : {&result.plan, &result.volume_plan}) {
-        for (const bake::PlanEntry& entry : *plan) {
-            print_note(fmt::format("{} {} for {}: {}", entry.name, entry.on ? "on" : "off",
-                                   printable(entry.subject.name), printable(entry.reason)));
-        }
+    for (const bake::PlanEntry& entry : result.plan) {
+        print_note(fmt::format("{} {} for {}: {}", entry.name, entry.on ? "on" : "off",
+                               printable(entry.subject.name), printable(entry.reason)));
     }
     for (const bake::StageReport& stage : result.stages) {
         print_note(fmt::format("{:<32} {:>10}  {:>12} rays  peak {}", printable(stage.name),
@@ -122,13 +120,14 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
                    const MachineRates& machine, const bake::BakeExtras& extras,
                    const bake::BakeResult& result) {
     const bake::EffectTable& effects = bake::all_effects();
-    std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
-    std::vector<bake::PlanEntry> others = result.volume_plan;
+    std::vector<bake::PlanEntry> first = result.plan;
+    bake::replace_entries(bake::Subject::Kind::material,
+                          bake::plan_bake(effects, scene, result.facts, wanted), first);
     const bake::Knobs budget =
         bake::with_model_error(effects, wanted, bake::find_model_error(first));
     return {bake::predict_costs({effects, scene, result.facts, budget, machine.rates,
                                  result.threads, extras.receiver_errors},
-                                first, others),
+                                first),
             machine.note};
 }
 
@@ -180,7 +179,7 @@ int run(const BakeCommand& options) {
         require(bake::run_bake(bake::all_effects(), imported.scene, knobs, context, extras));
     for (formats::Diagnostic& unmet :
          bake::describe_unmet({bake::all_effects(), imported.scene, result.facts, result.knobs,
-                               result.plan, result.volume_plan},
+                               result.plan},
                               wanted)) {
         result.warnings.push_back(std::move(unmet));
     }
@@ -200,7 +199,7 @@ int run(const BakeCommand& options) {
                                     machine.rates,
                                     result.threads,
                                     options.extras.receiver_errors};
-    const bake::CostPrediction used = bake::predict_costs(request, result.plan, result.volume_plan);
+    const bake::CostPrediction used = bake::predict_costs(request, result.plan);
     if (!options.report.empty()) {
         bake::predict_savings(request, result.plan);
         const Expectation expected = expect(imported.scene, knobs, machine, options.extras, result);

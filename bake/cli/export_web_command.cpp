@@ -16,6 +16,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "bake/base/interrupted.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
@@ -198,10 +199,7 @@ int run(const ExportWebCommand& options) {
     const auto page = require(
         runtime::make_web_page(view, lights, std::filesystem::path(options.path).stem().string(),
                                options.path, options.threads));
-    if (interrupted.load()) {
-        refuse(formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                   "nothing was written"));
-    }
+    if (interrupted.load()) refuse(bake::interrupted());
     std::vector<FolderFile> files;
     std::size_t bytes = 0;
     for (const runtime::PageFile& file : page) {

@@ -190,7 +190,7 @@ void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double 
 }
 
 Bill::Bill(const StageRates& rates, unsigned threads, std::vector<PlanEntry>& plan)
-    : rates_(rates), threads_(threads) {
+    : rates_(rates), plan_(plan), threads_(threads) {
     for (PlanEntry& entry : plan) {
         entry.predicted_seconds = 0;
         entry.predicted_bytes = 0;
@@ -215,6 +215,14 @@ void Bill::add_bytes(double bytes, PlanEntry* payer) {
     const auto whole = static_cast<std::uint64_t>(bytes);
     cost.bytes += whole;
     (payer != nullptr ? payer->predicted_bytes : cost.shared_bytes) += whole;
+}
+
+PlanEntry* Bill::payer(Subject::Kind kind, std::uint32_t subject, std::string_view name) const {
+    const auto found = std::ranges::find_if(plan_, [&](const PlanEntry& entry) {
+        return entry.on && entry.subject.kind == kind && entry.subject.index == subject &&
+               entry.name == name;
+    });
+    return found == plan_.end() ? nullptr : &*found;
 }
 
 }  // namespace opaline::bake

@@ -50,12 +50,10 @@ void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warni
     for (const std::string& effect : decided.knobs.effects) {
         const PlanEntry* left_out = nullptr;
         bool is_on = false;
-        for (const auto& plan : {decided.plan, decided.volume_plan}) {
-            for (const PlanEntry& entry : plan) {
-                if (entry.name == effect) {
-                    is_on = is_on || entry.on || entry.all_orders;  // another effect has its light
-                    left_out = &entry;
-                }
+        for (const PlanEntry& entry : decided.plan) {
+            if (entry.name == effect) {
+                is_on = is_on || entry.on || entry.all_orders;  // another effect has its light
+                left_out = &entry;
             }
         }
         if (is_on) continue;
@@ -81,7 +79,7 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
             if (knob.matters(layouts[m], entries_of(decided.plan, m))) return true;
         }
-        return knob.matters({}, decided.volume_plan);
+        return knob.matters({}, decided.plan);
     };
     std::string idle;
     const auto list = [&](std::string_view option) {
@@ -137,7 +135,7 @@ std::vector<Diagnostic> describe_early(const DecidedBake& decided) {
             describe_missed_models(decided.knobs.error_target, find_model_error(decided.plan))) {
         warnings.push_back(std::move(*missed));
     }
-    for (const PlanEntry& entry : decided.plan) {
+    for (const PlanEntry& entry : entries_of(decided.plan, Subject::Kind::material)) {
         const EffectDescriptor& effect = decided.effects[entry.effect];
         const std::uint32_t m = entry.subject.index;
         if (effect.warn_of_plan != nullptr) {

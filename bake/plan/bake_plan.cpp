@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 
 #include "bake/plan/effect.h"
 #include "bake/plan/plan_input.h"
@@ -62,13 +63,14 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
             decisions.push_back(std::move(entry));
         };
         for_each_rule(effects, decide);
-        plan.insert(plan.end(), decisions.begin(), decisions.end());
+        std::ranges::move(decisions, std::back_inserter(plan));
     }
     return plan;
 }
 
 double find_model_error(std::span<const PlanEntry> plan) {
     double most = 0;
+    plan = entries_of(plan, Subject::Kind::material);
     while (!plan.empty()) {
         const auto own = entries_of(plan, plan.front().subject.index);
         double square = 0;
@@ -84,7 +86,7 @@ double find_model_error(std::span<const PlanEntry> plan) {
 std::string list_choices(std::span<const PlanEntry> plan) {
     std::vector<std::string_view> seen;
     std::string list;
-    for (const PlanEntry& entry : plan) {
+    for (const PlanEntry& entry : entries_of(plan, Subject::Kind::material)) {
         if (!entry.choice.empty() && std::ranges::find(seen, entry.choice) == seen.end()) {
             seen.push_back(entry.choice);
             list += (list.empty() ? "" : ", ") + std::string(entry.choice);
@@ -95,18 +97,29 @@ std::string list_choices(std::span<const PlanEntry> plan) {
 
 const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view name,
                             std::uint32_t material) {
-    const auto entry = std::find_if(plan.begin(), plan.end(), [&](const PlanEntry& e) {
-        return e.name == name && e.subject.index == material;
-    });
-    return entry == plan.end() ? nullptr : &*entry;
+    const auto own = entries_of(plan, material);
+    const auto entry = std::ranges::find(own, name, &PlanEntry::name);
+    return entry == own.end() ? nullptr : &*entry;
 }
 
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material) {
-    const auto is_own = [&](const PlanEntry& e) { return e.subject.index == material; };
-    const auto first = std::find_if(plan.begin(), plan.end(), is_own);
-    const auto last = std::find_if_not(first, plan.end(), is_own);
-    return plan.subspan(static_cast<std::size_t>(first - plan.begin()),
-                        static_cast<std::size_t>(last - first));
+    const auto own = std::ranges::equal_range(entries_of(plan, Subject::Kind::material), material,
+                                              {}, [](const PlanEntry& e) { return e.subject.index; });
+    return {own.begin(), own.end()};
+}
+
+std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, Subject::Kind kind) {
+    const auto own =
+        std::ranges::equal_range(plan, kind, {}, [](const PlanEntry& e) { return e.subject.kind; });
+    return {own.begin(), own.end()};
+}
+
+void replace_entries(Subject::Kind kind, std::span<const PlanEntry> entries,
+                     std::vector<PlanEntry>& plan) {
+    const auto old = entries_of(plan, kind);
+    const auto first = plan.begin() + (old.data() - plan.data());
+    const auto at = plan.erase(first, first + static_cast<std::ptrdiff_t>(old.size()));
+    plan.insert(at, entries.begin(), entries.end());
 }
 
 }  // namespace opaline::bake

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <utility>
 
+#include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
 
 namespace opaline::bake {
@@ -91,10 +92,7 @@ formats::Result<Estimate> estimate_pixels(
                          total});
                 }
             });
-        if (context.cancelled()) {
-            return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                       "nothing was written");
-        }
+        if (context.cancelled()) return interrupted();
         estimate.samples += round;
         estimate.seconds = elapsed();
         if (options.seconds > 0 && estimate.seconds >= options.seconds) break;
