@@ -1,14 +1,12 @@
 #include "bake/emitters/plan_emitters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <numbers>
 #include <utility>
 
-#include "bake/emitters/emitter_knobs.h"
 #include "bake/emitters/point_box.h"
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/largest_light.h"
@@ -116,8 +114,6 @@ std::string describe_light(const formats::Scene& scene, const Lamp& lamp, double
     return text;
 }
 
-constexpr std::array<const KnobSpec*, 2> kKnobs{&kEmitterParticles, &kEmitterRays};
-
 }  // namespace
 
 EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
@@ -162,14 +158,6 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
         plan.entries.push_back(std::move(entry));
     }
     return plan;
-}
-
-EffectDescriptor describe_emitters(Effect id) {
-    return {.id = id,
-            .name = kEmitters,
-            .help = "light of lamps, glowing surfaces and lights in the scene",
-            .knobs = kKnobs,
-            .concerns_emitters = true};
 }
 
 }  // namespace opaline::bake

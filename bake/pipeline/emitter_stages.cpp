@@ -130,15 +130,6 @@ void warn_of_immersed(std::span<const std::string> immersed,
     }
 }
 
-// By material; of those without receivers as RowLayout begins.
-std::vector<RowLayout> layouts_of(const BakeInputs& bake, std::span<const SubjectState> subjects) {
-    std::vector<RowLayout> layouts(bake.scene.materials.size());
-    for (const SubjectState& subject : subjects) {
-        layouts[subject.material] = subject.layout;
-    }
-    return layouts;
-}
-
 formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
                             const Context& context, BakeResult& result) {
     if (std::ranges::none_of(result.asset.primitives, [](const formats::PrimitiveRecord& record) {
@@ -188,7 +179,7 @@ std::optional<Work> work_of_media(const CostedBake& bake, std::size_t lamps, dou
 formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamps,
                               const Context& context, std::vector<SubjectState>& subjects,
                               BakeResult& result) {
-    const std::vector<RowLayout> layouts = layouts_of(bake, subjects);
+    const std::vector<RowLayout> layouts = layouts_of(bake.scene, subjects);
     LitMedia media;
     if (std::ranges::any_of(layouts, &RowLayout::translucent)) {
         media = {make_light_medium(bake, result.plan, result.knobs, context, subjects), layouts,

@@ -119,32 +119,16 @@ std::vector<formats::Openness> bake_all_openness(const BakeInputs& bake,
     });
 }
 
-// One layout for each material, with the colours that the studies found for media shown as
-// surfaces.
-std::vector<RowLayout> final_layouts(const BakeInputs& bake,
-                                     std::span<const SubjectState> subjects) {
-    std::vector<RowLayout> layouts(bake.scene.materials.size());
-    for (const SubjectState& subject : subjects) {
-        RowLayout& layout = layouts[subject.material] = subject.layout;
-        for (std::size_t e = 0; e < subject.effects.size(); ++e) {
-            const EffectDescriptor& effect = bake.effects.effects[e];
-            if (effect.tint != nullptr && subject.effects[e].study != nullptr) {
-                layout.tint = effect.tint(*subject.effects[e].study);
-            }
-        }
-    }
-    return layouts;
-}
-
 // The plan after the studies: rules decide again with their findings.
 void amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects, const Knobs& knobs,
                 const Context& context, std::vector<PlanEntry>& plan) {
     const auto amend = [&](PlanEntry& entry) {
-        const EffectDescriptor& effect = bake.effects[entry.effect];
-        const auto e = static_cast<std::size_t>(&effect - bake.effects.effects.data());
+        const auto e = static_cast<std::size_t>(&bake.effects[entry.effect] -
+                                                bake.effects.effects.data());
         const SubjectState& subject = state_of(subjects, entry.subject.index);
-        if (effect.amend != nullptr && subject.effects[e].study != nullptr) {
-            effect.amend(inputs_of(bake, subject, e, knobs, context), entry);
+        const DecisionRule& rule = rule_of(bake.effects, entry);
+        if (rule.amend != nullptr && subject.effects[e].study != nullptr) {
+            rule.amend(inputs_of(bake, subject, e, knobs, context), entry);
         }
     };
     replace_entries(Subject::Kind::material,
@@ -187,7 +171,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
     const std::unique_ptr<OtherLight> light =
-        find_shared_light(unlit, knobs, context, final_layouts(unlit, subjects), subjects, log);
+        find_shared_light(unlit, knobs, context, layouts_of(unlit.scene, subjects), subjects, log);
     BakeInputs bake = unlit;
     bake.light = light.get();
     if (knobs.error_target > 0) {
@@ -204,7 +188,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     warn_of_models(bake, subjects, knobs, context, result.warnings);
     std::vector<formats::Openness> openness = bake_all_openness(bake, subjects, context, log);
     if (context.cancelled()) return interrupted();
-    result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(rows->rows),
+    result.asset = pack_asset(bake.scene, layouts_of(bake.scene, subjects), std::move(rows->rows),
                               std::move(openness));
     result.receiver_errors = std::move(rows->receiver_error);
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
@@ -301,7 +285,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         return std::move(status).error();
     }
     if (!plan.volumes.empty()) {
-        const std::vector<RowLayout> layouts = final_layouts(bake, subjects);
+        const std::vector<RowLayout> layouts = layouts_of(bake.scene, subjects);
         if (auto status = add_volumes({effects, scene, rays, receivers, layouts}, context, result);
             !status) {
             return std::move(status).error();

@@ -122,7 +122,7 @@ formats::Status measure_glow(const VolumeStages& inputs, const VolumeCheckOption
 void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& knobs) {
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (effect.concerns_volumes) {
+            if (effect.kind == Subject::Kind::volume) {
                 knobs.set(*knob, baked.knobs[*knob]);
             }
         }
@@ -176,7 +176,7 @@ Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quali
     knobs.quality = quality;
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (effect.concerns_volumes && !knobs.is_given(*knob)) {
+            if (effect.kind == Subject::Kind::volume && !knobs.is_given(*knob)) {
                 knobs.set(*knob, knob->preset[static_cast<std::size_t>(quality)]);
             }
         }

@@ -34,6 +34,7 @@ struct KnobSpec {
     /// Not empty: it is a choice; its values are places in this list, and people read the words.
     std::span<const std::string_view> words{};
     std::span<const double> allowed{};  ///< not empty: the only values, besides 0 for `auto`
+    double even_media = 0;  ///< the value for which media are homogeneous; 0: there is none
 
     /// Values of the presets draft, preview, production, reference: each at least as accurate as
     /// the one before.

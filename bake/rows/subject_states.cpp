@@ -14,6 +14,15 @@ PreparedPtr& result_of(EffectState& state, Step step) {
                                    : state.prepared;
 }
 
+void take_tints(const EffectTable& effects, SubjectState& subject) {
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        const auto tint = effects.effects[e].tint;
+        if (tint != nullptr && subject.effects[e].study != nullptr) {
+            subject.layout.tint = tint(*subject.effects[e].study);
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan,
@@ -42,7 +51,17 @@ void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, co
             state.effects[e].acts = acts_on(effect, decisions, state.layout) &&
                                     (bake.has_environment() || effect.adds_other_light || helps);
         }
+        take_tints(bake.effects, state);
     }
+}
+
+std::vector<RowLayout> layouts_of(const formats::Scene& scene,
+                                  std::span<const SubjectState> subjects) {
+    std::vector<RowLayout> layouts(scene.materials.size());
+    for (const SubjectState& subject : subjects) {
+        layouts[subject.material] = subject.layout;
+    }
+    return layouts;
 }
 
 const SubjectState& state_of(std::span<const SubjectState> subjects, std::uint32_t material) {
@@ -90,6 +109,7 @@ void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Conte
         const auto run = [&](SubjectState& subject, std::uint64_t& rays) {
             result_of(subject.effects[e], step) =
                 own.run(inputs_of(bake, subject, e, knobs, context), rays);
+            if (step == Step::study) take_tints(bake.effects, subject);
             return 0;
         };
         const auto run_all = [&](std::uint64_t& rays) {

@@ -12,7 +12,7 @@ namespace opaline::bake {
 /// One subject of a bake in progress.
 struct SubjectState {
     std::uint32_t material = 0;
-    RowLayout layout;
+    RowLayout layout;  ///< with the tint that studies found
     std::vector<EffectState> effects;  ///< in the order of the table
 };
 
@@ -23,6 +23,10 @@ std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const
 /// Updates layouts and acting effects of the subjects after their studies, which are kept.
 void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, const Knobs& knobs,
                      std::vector<SubjectState>& subjects);
+
+/// By material; of those without receivers as RowLayout begins.
+std::vector<RowLayout> layouts_of(const formats::Scene& scene,
+                                  std::span<const SubjectState> subjects);
 
 /// The state of a material. Precondition: it has receivers.
 const SubjectState& state_of(std::span<const SubjectState> subjects, std::uint32_t material);

@@ -213,7 +213,7 @@ void add_chosen_knobs(const EffectTable& effects, std::span<const PlanEntry> pla
             const std::vector<PlanEntry> other = choose_word(plan, choice->words[word]);
             for (const EffectDescriptor& effect : effects.effects) {
                 for (const KnobSpec* knob : effect.knobs) {
-                    if (effect.concerns_volumes && !subject.has(*knob) && knob->matters({}, other)) {
+                    if (effect.kind == Subject::Kind::volume && !subject.has(*knob) && knob->matters({}, other)) {
                         subject.chosen.push_back({choice, word, knob});
                     }
                 }
@@ -234,11 +234,11 @@ SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& sce
     subject.has_surfaces = !scene.primitives.empty();
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (!(effect.concerns_volumes || effect.concerns_layers) ||
+            if ((effect.kind != Subject::Kind::volume && effect.kind != Subject::Kind::layer) ||
                 !knob->matters({}, plan)) {
                 continue;
             }
-            (effect.concerns_volumes ? subject.has_volumes : subject.has_layers) = true;
+            (effect.kind == Subject::Kind::volume ? subject.has_volumes : subject.has_layers) = true;
             subject.knobs.push_back(knob);
         }
     }
