@@ -177,10 +177,9 @@ int run(const BakeCommand& options) {
     };
     auto result =
         require(bake::run_bake(bake::all_effects(), imported.scene, knobs, context, extras));
-    for (formats::Diagnostic& unmet :
-         bake::describe_unmet({bake::all_effects(), imported.scene, result.facts, result.knobs,
-                               result.plan},
-                              wanted)) {
+    for (formats::Diagnostic& unmet : bake::describe_unmet(
+             {bake::all_effects(), imported.scene, result.facts, result.knobs, result.plan},
+             wanted)) {
         result.warnings.push_back(std::move(unmet));
     }
     result.warnings = drop_said(std::move(result.warnings), warnings);

@@ -87,8 +87,8 @@ formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
         if (part.row_offset.size() != layout.terms() * set.size() + 1 ||
             !take_rows(sink, std::move(part))) {
             return formats::make_error(formats::ErrorKind::resource, "", "transport",
-                              "more than 2^32 coefficients do not fit into one file",
-                              "lower --coefficients, or split the scene");
+                                       "more than 2^32 coefficients do not fit into one file",
+                                       "lower --coefficients, or split the scene");
         }
         errors.insert(errors.end(), gathered.receiver_error.begin(), gathered.receiver_error.end());
     }
@@ -123,8 +123,8 @@ std::vector<formats::Openness> bake_all_openness(const BakeInputs& bake,
 void amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects, const Knobs& knobs,
                 const Context& context, std::vector<PlanEntry>& plan) {
     const auto amend = [&](PlanEntry& entry) {
-        const auto e = static_cast<std::size_t>(&bake.effects[entry.effect] -
-                                                bake.effects.effects.data());
+        const auto e =
+            static_cast<std::size_t>(&bake.effects[entry.effect] - bake.effects.effects.data());
         const SubjectState& subject = state_of(subjects, entry.subject.index);
         const DecisionRule& rule = rule_of(bake.effects, entry);
         if (rule.amend != nullptr && subject.effects[e].study != nullptr) {
@@ -247,8 +247,8 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         std::ranges::copy(evened->warnings, std::back_inserter(result.warnings));
     }
     const formats::Scene& scene = evened ? evened->scene : facing;
-    ScenePlan plan = run_stage(
-        log, "plan", [&](std::uint64_t&) { return plan_scene(effects, scene, wanted); });
+    ScenePlan plan =
+        run_stage(log, "plan", [&](std::uint64_t&) { return plan_scene(effects, scene, wanted); });
     result.plan = std::move(plan.entries);
     result.facts = std::move(plan.facts);
     if (auto status = check_lamps(scene, plan.count_emitters()); !status) {

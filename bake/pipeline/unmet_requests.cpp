@@ -23,16 +23,19 @@ bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const
     const auto found = std::ranges::find(effects.effects, name, &EffectDescriptor::name);
     if (found == effects.effects.end()) return false;
     switch (found->kind) {
-        case Subject::Kind::volume: return !scene.volumes.empty();
-        case Subject::Kind::layer: return !scene.layers.empty();
-        case Subject::Kind::emitter: return sends_out_light(scene);
-        case Subject::Kind::material: break;
+        case Subject::Kind::volume:
+            return !scene.volumes.empty();
+        case Subject::Kind::layer:
+            return !scene.layers.empty();
+        case Subject::Kind::emitter:
+            return sends_out_light(scene);
+        case Subject::Kind::material:
+            break;
     }
     const MaterialFacts unknown;  // placeholder: concerns() reads the material only
     return !found->rules.empty() &&
            std::ranges::any_of(scene.primitives, [&](const formats::Primitive& p) {
-               return found->rules.front().concerns(
-                   {scene.materials[p.material], unknown, knobs});
+               return found->rules.front().concerns({scene.materials[p.material], unknown, knobs});
            });
 }
 

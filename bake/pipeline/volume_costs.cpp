@@ -106,8 +106,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     bill.open(scattering_stage(layouts));
     for (std::size_t i = 0; i < works.size(); ++i) {
         // Walks and rows that light of the sky does not need are those of surfaces.
-        PlanEntry* const own =
-            payer(i, layouts[i].sees_sky ? kOftenInVolumes : kSurfacesToVolumes);
+        PlanEntry* const own = payer(i, layouts[i].sees_sky ? kOftenInVolumes : kSurfacesToVolumes);
         bill.add(scattering_work(input, works[i]), own);
         bill.add_bytes(scattered_row_bytes(works[i], knobs), own);
     }

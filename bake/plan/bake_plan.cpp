@@ -11,16 +11,12 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kShareOfError = 0.25;  // of the target, for all that is left out of a subject
-
-double least_bound(const EffectTable& effects, const PlanInput& input) {
-    if (!(input.knobs.error_target > 0)) return kLeastBound;
-    std::size_t rows = 0;
+std::size_t count_decisions(const EffectTable& effects, const PlanInput& input) {
+    std::size_t count = 0;
     for_each_rule(effects, [&](const EffectDescriptor&, const DecisionRule& rule, std::uint8_t) {
-        rows += rule.concerns(input) ? 1 : 0;
+        count += rule.concerns(input) ? 1 : 0;
     });
-    return std::min(kLeastBound, kShareOfError * input.knobs.error_target /
-                                     static_cast<double>(std::max<std::size_t>(1, rows)));
+    return count;
 }
 
 }  // namespace
@@ -43,7 +39,7 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
     std::vector<PlanEntry> plan;
     for (const Subject& subject : list_subjects(scene, facts)) {
         PlanInput input{scene.materials[subject.index], facts.material[subject.index], knobs};
-        input.least_bound = least_bound(effects, input);
+        input.least_bound = least_bound(knobs, count_decisions(effects, input));
         std::vector<PlanEntry> decisions;
         const auto decide = [&](const EffectDescriptor& effect, const DecisionRule& rule,
                                 std::uint8_t number) {
@@ -54,12 +50,8 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
             entry.rule = number;
             entry.name = rule.name;
             entry.subject = subject;
-            if (entry.forced) {
-                entry.reason += "; forced: by its bound it would be left out";
-            }
-            if (amend) {
-                amend(entry);
-            }
+            tell_forced(entry);
+            if (amend) amend(entry);
             decisions.push_back(std::move(entry));
         };
         for_each_rule(effects, decide);
@@ -103,8 +95,9 @@ const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view na
 }
 
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material) {
-    const auto own = std::ranges::equal_range(entries_of(plan, Subject::Kind::material), material,
-                                              {}, [](const PlanEntry& e) { return e.subject.index; });
+    const auto own =
+        std::ranges::equal_range(entries_of(plan, Subject::Kind::material), material, {},
+                                 [](const PlanEntry& e) { return e.subject.index; });
     return {own.begin(), own.end()};
 }
 

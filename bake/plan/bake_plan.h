@@ -53,9 +53,9 @@ struct PlanEntry {
 /// Findings of a decision's study; null: none.
 using AmendEntry = std::function<void(PlanEntry& entry)>;
 
-/// Decides what to simulate of materials, from the scene alone: traces nothing. Subject by subject, and for each
-/// in the order of the effects and their rules: later ones see what `amend` made of earlier ones.
-/// `facts`: inspect_scene's.
+/// Decides what to simulate of materials, from the scene alone: traces nothing. Subject by subject,
+/// and for each in the order of the effects and their rules: later ones see what `amend` made of
+/// earlier ones. `facts`: inspect_scene's.
 std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
                                  const SceneFacts& facts, const Knobs& knobs,
                                  const AmendEntry& amend = {});

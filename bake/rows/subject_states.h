@@ -12,7 +12,7 @@ namespace opaline::bake {
 /// One subject of a bake in progress.
 struct SubjectState {
     std::uint32_t material = 0;
-    RowLayout layout;  ///< with the tint that studies found
+    RowLayout layout;                  ///< with the tint that studies found
     std::vector<EffectState> effects;  ///< in the order of the table
 };
 

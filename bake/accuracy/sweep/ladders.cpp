@@ -213,7 +213,8 @@ void add_chosen_knobs(const EffectTable& effects, std::span<const PlanEntry> pla
             const std::vector<PlanEntry> other = choose_word(plan, choice->words[word]);
             for (const EffectDescriptor& effect : effects.effects) {
                 for (const KnobSpec* knob : effect.knobs) {
-                    if (effect.kind == Subject::Kind::volume && !subject.has(*knob) && knob->matters({}, other)) {
+                    if (effect.kind == Subject::Kind::volume && !subject.has(*knob) &&
+                        knob->matters({}, other)) {
                         subject.chosen.push_back({choice, word, knob});
                     }
                 }
@@ -238,7 +239,8 @@ SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& sce
                 !knob->matters({}, plan)) {
                 continue;
             }
-            (effect.kind == Subject::Kind::volume ? subject.has_volumes : subject.has_layers) = true;
+            (effect.kind == Subject::Kind::volume ? subject.has_volumes : subject.has_layers) =
+                true;
             subject.knobs.push_back(knob);
         }
     }
