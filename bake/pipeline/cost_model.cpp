@@ -104,10 +104,8 @@ void bill_step(const CostedBake& bake, Step step, Bill& bill) {
         bool is_open = false;
         for (const CostedSubject& subject : bake.subjects) {
             const formats::Material& material = bake.request.scene.materials[subject.material];
-            EffectState state;
-            state.acts = subject.acts[e];
-            if (own.work == nullptr ||
-                !is_taken(effects[e], state, step, material, subject.layout)) {
+            if (!subject.acts[e] || own.work == nullptr ||
+                !is_taken(effects[e], step, material, subject.layout)) {
                 continue;
             }
             if (own.by_subject || !is_open) {

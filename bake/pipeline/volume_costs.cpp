@@ -173,9 +173,7 @@ void bill_other_trials(const CostedBake& bake, Bill& bill) {
             // What is gathered in batches is kept from trial to trial.
             const bool is_kept = effects[e].gather.gather_batch != nullptr;
             const SubjectCost in_bake = bake.cost_of(subject, (is_kept ? 1 : kRounds) * own);
-            const SubjectCost cost{traced,         in_bake.material,  in_bake.facts,
-                                   in_bake.layout, in_bake.receivers, in_bake.traces_rays};
-            bill.add(effects[e].gather.work(cost));
+            bill.add(effects[e].gather.work(in_bake.with(traced, subject.layout)));
         }
         bill.add(encode_work(bake.input, kEncodings * subject.layout.terms(),
                              subject.layout.bands(), own));

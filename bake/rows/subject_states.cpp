@@ -83,11 +83,10 @@ const PreparationStep& step_of(const EffectDescriptor& effect, Step step) {
                                    : effect.prepare;
 }
 
-bool is_taken(const EffectDescriptor& effect, const EffectState& state, Step step,
-              const formats::Material& material, const RowLayout& layout) {
+bool is_taken(const EffectDescriptor& effect, Step step, const formats::Material& material,
+              const RowLayout& layout) {
     const PreparationStep& own = step_of(effect, step);
-    return state.acts && own.run != nullptr &&
-           (own.applies == nullptr || own.applies(material, layout));
+    return own.run != nullptr && (own.applies == nullptr || own.applies(material, layout));
 }
 
 void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Context& context,
@@ -98,8 +97,9 @@ void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Conte
         std::vector<SubjectState*> concerned;
         for (SubjectState& subject : subjects) {
             const bool is_done = step == Step::study && subject.effects[e].study != nullptr;
-            if (!is_done && is_taken(effects[e], subject.effects[e], step,
-                                     bake.scene.materials[subject.material], subject.layout)) {
+            if (!is_done && subject.effects[e].acts &&
+                is_taken(effects[e], step, bake.scene.materials[subject.material],
+                         subject.layout)) {
                 concerned.push_back(&subject);
             }
         }

@@ -37,9 +37,9 @@ EffectInputs inputs_of(const BakeInputs& bake, const SubjectState& subject, std:
 /// Steps that run once for each effect of each subject, in this order.
 enum class Step { study, samples, prepare };
 const PreparationStep& step_of(const EffectDescriptor& effect, Step step);
-/// Whether a subject goes through the step of an effect.
-bool is_taken(const EffectDescriptor& effect, const EffectState& state, Step step,
-              const formats::Material& material, const RowLayout& layout);
+/// Whether a subject goes through the step of an effect that acts on it.
+bool is_taken(const EffectDescriptor& effect, Step step, const formats::Material& material,
+              const RowLayout& layout);
 
 /// Runs one step for all subjects and notes its stages; a study once: what a pilot changes
 /// later does not undo its choices.
