@@ -229,9 +229,7 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     CostedBake bake = make_costed_bake(request, plan);
     const CostedVolumes volumes = make_costed_volumes(request);
     bake.traces_rays = bake.traces_rays || (!volumes.empty() && request.facts.triangles > 0);
-    const bool has_lamps = std::ranges::any_of(entries_of(plan, Subject::Kind::emitter),
-                                               [](const PlanEntry& entry) { return entry.on; });
-    bill_placing(bake, has_lamps, bill);
+    bill_placing(bake, is_on(plan, Subject::Kind::emitter), bill);
     bill_step(bake, Step::study, bill);
     bill_shared_light(bake, bill);
     if (request.knobs.error_target > 0) {

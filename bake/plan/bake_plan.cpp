@@ -107,6 +107,15 @@ std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, Subject::
     return {own.begin(), own.end()};
 }
 
+bool is_on(std::span<const PlanEntry> plan, std::string_view name) {
+    return std::ranges::any_of(
+        plan, [&](const PlanEntry& entry) { return entry.on && entry.name == name; });
+}
+
+bool is_on(std::span<const PlanEntry> plan, Subject::Kind kind) {
+    return std::ranges::any_of(entries_of(plan, kind), &PlanEntry::on);
+}
+
 void replace_entries(Subject::Kind kind, std::span<const PlanEntry> entries,
                      std::vector<PlanEntry>& plan) {
     const auto old = entries_of(plan, kind);

@@ -79,6 +79,10 @@ std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint
 /// The entries on subjects of one kind, which are consecutive.
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, Subject::Kind kind);
 
+/// Whether a decision of that name, or on a subject of that kind, is on.
+bool is_on(std::span<const PlanEntry> plan, std::string_view name);
+bool is_on(std::span<const PlanEntry> plan, Subject::Kind kind);
+
 /// Puts other decisions in the place of those on subjects of that kind.
 void replace_entries(Subject::Kind kind, std::span<const PlanEntry> entries,
                      std::vector<PlanEntry>& plan);

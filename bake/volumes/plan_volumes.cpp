@@ -154,11 +154,6 @@ void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, con
     }
 }
 
-bool has_effect(std::span<const PlanEntry> plan, std::string_view name) {
-    return std::ranges::any_of(
-        plan, [&](const PlanEntry& entry) { return entry.on && entry.name == name; });
-}
-
 std::string why_dark(const VolumeBrightness& most) {
     return most.albedo <= 0          ? "the volume absorbs and does not scatter"
            : most.seen < kLeastBound ? "the volume is so thin that it is not seen"
@@ -185,11 +180,11 @@ bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
 }
 
 bool lights_surfaces(std::span<const PlanEntry> plan) {
-    return has_effect(plan, kVolumesToSurfaces);
+    return is_on(plan, kVolumesToSurfaces);
 }
 
 bool sees_surfaces(std::span<const PlanEntry> plan) {
-    return has_effect(plan, kSurfacesToVolumes);
+    return is_on(plan, kSurfacesToVolumes);
 }
 
 const char* scattering_stage(std::span<const VolumeLayout> layouts) {
