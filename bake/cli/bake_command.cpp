@@ -9,7 +9,6 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
-#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -117,7 +116,7 @@ std::vector<OutputFile> name_outputs(const BakeCommand& options) {
 
 // Predicted seconds of the stages, before a pilot changed any knob.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
-                   const MachineRates& machine, const bake::BakeExtras& extras,
+                   const bake::MachineRates& machine, const bake::BakeExtras& extras,
                    const bake::BakeResult& result) {
     const bake::EffectTable& effects = bake::all_effects();
     std::vector<bake::PlanEntry> first = result.plan;
@@ -190,7 +189,7 @@ int run(const BakeCommand& options) {
                                       options.compression));
     const std::uint64_t bytes = file.bytes_written();
     std::size_t next = 0;
-    const MachineRates machine = find_machine_rates();
+    const bake::MachineRates machine = bake::find_machine_rates();
     const bake::CostRequest request{bake::all_effects(),
                                     imported.scene,
                                     result.facts,
@@ -209,7 +208,7 @@ int run(const BakeCommand& options) {
         require(files[next].write(make_depfile(options.output, imported.scene.inputs)));
     }
     commit_outputs(files);
-    learn_machine_rates(machine.rates, used, result.stages);
+    bake::learn_machine_rates(used.stages, result.stages, machine.rates);
     if (context.on_progress) context.on_progress({"bake", 1, 1});
     if (options.verbose) {
         print_stages(result);

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
@@ -62,7 +62,7 @@ int run(const PlanCommand& options) {
         warnings.push_back(std::move(unmet));
     }
     require(report_warnings(warnings));
-    const bake::StageRates rates = find_machine_rates().rates;
+    const bake::StageRates rates = bake::find_machine_rates().rates;
     const bake::Knobs budget =
         bake::with_model_error(effects, knobs, bake::find_model_error(plan.entries));
     const bake::CostRequest request{effects, scene, plan.facts, budget, rates, threads};
