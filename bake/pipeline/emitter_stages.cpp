@@ -143,11 +143,7 @@ formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
                                    context);
         });
     if (!checked) return std::move(checked).error();
-    if (checked->receivers_checked > 0) {
-        result.error.by_effect.push_back({"emitters in media", checked->rms_relative});
-    } else {
-        result.error.not_measured.emplace_back("emitters in media");
-    }
+    result.error.add_part("emitters in media", checked->receivers_checked, checked->rms_relative);
     return formats::ok_status();
 }
 
@@ -191,11 +187,8 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                       context, result.stages);
     if (!baked) return std::move(baked).error();
     result.asset.emitters = std::move(baked->emitters);
-    if (baked->error.receivers_checked > 0) {
-        result.error.by_effect.push_back({std::string(kEmitters), baked->error.rms_relative});
-    } else {
-        result.error.not_measured.emplace_back(kEmitters);
-    }
+    result.error.add_part(std::string(kEmitters), baked->error.receivers_checked,
+                          baked->error.rms_relative);
     const double limit = result.knobs.error_target > 0 ? result.knobs.error_target
                                                        : acceptable_error(result.knobs.quality);
     if (baked->error.rms_relative > limit) {

@@ -110,11 +110,7 @@ formats::Status measure_glow(const VolumeStages& inputs, const VolumeCheckOption
             return found;
         });
     if (!error) return std::move(error).error();
-    if (error->rays_checked > 0) {
-        result.error.by_effect.push_back({"light of volumes", error->rms_relative});
-    } else {
-        result.error.not_measured.emplace_back("light of volumes");
-    }
+    result.error.add_part("light of volumes", error->rays_checked, error->rms_relative);
     return formats::ok_status();
 }
 
