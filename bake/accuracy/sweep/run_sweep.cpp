@@ -33,10 +33,6 @@ formats::Error make_time_error(std::string fault) {
                                "give more seconds, or a smaller scene");
 }
 
-struct Prediction {
-    double seconds = 0, bytes = 0;
-};
-
 std::string amount(double value, const char* unit) {
     char text[48];
     std::snprintf(text, sizeof text, value < 10 ? "%.1f %s" : "%.0f %s", value, unit);
@@ -64,12 +60,10 @@ struct Sweep {
     std::size_t total = 1;
     double measured = 0, predicted = 0;  // of the points so far
 
-    Prediction predict_point(const Knobs& knobs) const {
+    CostPrediction predict_point(const Knobs& knobs) const {
         std::vector<PlanEntry> plan = result.plan;
         replace_entries(Subject::Kind::material, plan_bake(effects, scene, facts, knobs), plan);
-        const CostPrediction cost =
-            predict_costs({effects, scene, facts, knobs, options.rates, context.threads}, plan);
-        return {cost.seconds, static_cast<double>(cost.bytes)};
+        return predict_costs({effects, scene, facts, knobs, options.rates, context.threads}, plan);
     }
     LadderRequest ladder_request() const {
         return {effects, result.subject, options.bake, list_choices(result.plan)};
@@ -85,9 +79,9 @@ struct Sweep {
     }
 
     // Why a point is skipped; empty: it is not.
-    std::string objection(const Prediction& cost, double seconds_left) const {
-        if (cost.bytes > options.most_bytes) {
-            return "the file would be " + amount(cost.bytes * 1e-9, "GB");
+    std::string objection(const CostPrediction& cost, double seconds_left) const {
+        if (const auto bytes = static_cast<double>(cost.bytes); bytes > options.most_bytes) {
+            return "the file would be " + amount(bytes * 1e-9, "GB");
         }
         const double seconds = cost.seconds * scale();
         if (seconds_left <= 0) return "no time was left for its " + amount(seconds, "s");
@@ -132,8 +126,9 @@ struct Sweep {
         return nullptr;
     }
 
-    void skip(const SweepPoint& point, const Prediction& cost, std::string reason) {
-        result.skipped.push_back({point, cost.seconds * scale(), cost.bytes, std::move(reason)});
+    void skip(const SweepPoint& point, const CostPrediction& cost, std::string reason) {
+        result.skipped.push_back(
+            {point, cost.seconds * scale(), static_cast<double>(cost.bytes), std::move(reason)});
     }
 
     // Bakes a point, or notes why not. A choice that an automatic one made as well is not baked
@@ -145,7 +140,7 @@ struct Sweep {
             --total;
             return formats::ok_status();
         }
-        const Prediction cost = predict_point(point.knobs);
+        const CostPrediction cost = predict_point(point.knobs);
         if (std::string reason = objection(cost, seconds_left); !reason.empty()) {
             skip(point, cost, std::move(reason));
             return formats::ok_status();
@@ -175,7 +170,7 @@ struct Sweep {
 // The finest candidate that half of the time that is left allows.
 std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     for (const SweepPoint& candidate : make_truths(sweep.ladder_request())) {
-        const Prediction cost = sweep.predict_point(candidate.knobs);
+        const CostPrediction cost = sweep.predict_point(candidate.knobs);
         if (sweep.objection(cost, 0.5 * sweep.left()).empty()) return candidate;
     }
     return std::nullopt;
