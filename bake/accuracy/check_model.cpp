@@ -158,8 +158,8 @@ std::vector<std::vector<bool>> find_creases(const formats::Scene& scene) {
 
 TermSet held_light(const EffectTable& effects, std::span<const PlanEntry> plan) {
     TermSet held = ModelCheckOptions().simulated;
-    for (const PlanEntry& entry : plan) {
-        held |= entry.on && entry.rule == 0 ? effects[entry.effect].held_light : TermSet::none;
+    for (const PlanEntry& entry : entries_of(plan, Subject::Kind::material)) {
+        held |= entry.on ? rule_of(effects, entry).held : TermSet::none;
     }
     return held;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bake/accuracy/model_pairs.h"
+#include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/reference/random_stream.h"
 #include "formats/opal/rgb.h"
@@ -165,10 +166,7 @@ formats::Result<std::optional<ModelErrorReport::Suns>> check_suns(
     if (!context.cancelled()) {
         trace(kPilot, more);
     }
-    if (context.cancelled()) {
-        return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                   "nothing was written");
-    }
+    if (context.cancelled()) return interrupted();
     const double groups = kPilot + more;
     std::vector<ModelPair> pairs;  // sun by sun
     for (std::uint32_t s = 0; s < kSuns; ++s) {

@@ -78,7 +78,7 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
 std::vector<std::string_view> unmeasured_effects(const EffectTable& effects,
                                                  std::span<const PlanEntry> plan) {
     std::vector<std::string_view> names;
-    for (const PlanEntry& entry : plan) {
+    for (const PlanEntry& entry : entries_of(plan, Subject::Kind::material)) {
         const EffectDescriptor& effect = effects[entry.effect];
         if (entry.on && !effect.help.empty() && effect.gather.add == nullptr &&
             effect.exchange_rays == nullptr &&

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bake/rows/subject_states.h"
@@ -38,6 +39,15 @@ struct ErrorReport : MeasuredError {
     /// Primitive with the largest part of the squared error between receivers.
     std::uint32_t worst_between = 0;
     std::vector<std::string> not_measured;  ///< effects of the file that the check does not see
+
+    /// What a check of its own found at so many places; none: it is not measured.
+    void add_part(std::string name, std::uint32_t checked, double rms) {
+        if (checked > 0) {
+            by_effect.push_back({std::move(name), rms});
+        } else {
+            not_measured.push_back(std::move(name));
+        }
+    }
 };
 
 /// One receiver under one light: luminance, and its errors against two independent estimates of the

@@ -30,8 +30,15 @@ inline double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Of all threads of the process so far [s].
-inline double cpu_seconds(const rusage& usage) {
+/// What the process took so far.
+inline rusage process_usage() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage;
+}
+
+/// Of all its threads [s].
+inline double cpu_seconds(const rusage& usage = process_usage()) {
     const auto seconds = [](const timeval& t) {
         return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
     };
@@ -43,12 +50,10 @@ inline double cpu_seconds(const rusage& usage) {
 template <class Stage>
 auto run_stage(StageLog& log, std::string name, std::string group, Stage&& stage) {
     const Clock::time_point start = Clock::now();
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const double cpu_before = cpu_seconds(usage);
+    const double cpu_before = cpu_seconds();
     std::uint64_t rays = 0;
     auto value = stage(rays);
-    getrusage(RUSAGE_SELF, &usage);
+    const rusage usage = process_usage();
     log.push_back({std::move(name), std::move(group), seconds_since(start),
                    cpu_seconds(usage) - cpu_before, rays,
                    static_cast<std::uint64_t>(usage.ru_maxrss) * 1024});

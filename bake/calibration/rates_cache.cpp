@@ -138,4 +138,20 @@ void learn_rates(std::span<const StageCost> predicted, const StageLog& ran, Stag
     }
 }
 
+MachineRates find_machine_rates() {
+    const std::filesystem::path path = rates_path();
+    if (auto known = read_rates(path, this_machine())) {
+        return {std::move(*known), "learnt from bakes, read from " + path.string()};
+    }
+    return {{}, "constants: no bake on this machine is known"};
+}
+
+void learn_machine_rates(std::span<const StageCost> predicted, const StageLog& ran,
+                         StageRates rates) {
+    learn_rates(predicted, ran, rates);
+    if (const std::filesystem::path path = rates_path(); !path.empty()) {
+        static_cast<void>(write_rates(path, this_machine(), rates));
+    }
+}
+
 }  // namespace opaline::bake

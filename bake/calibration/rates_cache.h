@@ -20,6 +20,20 @@ namespace opaline::bake {
 /// than the constants say: its cause is not the machine, as where test lights are computed or read.
 void learn_rates(std::span<const StageCost> predicted, const StageLog& ran, StageRates& rates);
 
+/// The rates of this machine, and their source.
+struct MachineRates {
+    StageRates rates;
+    std::string note;  ///< for reports
+};
+
+/// Reads what earlier bakes taught; a cache that is not there or damaged teaches nothing.
+MachineRates find_machine_rates();
+
+/// learn_rates, of the rates as they were found; the result is kept in the user's cache. A cache
+/// that cannot be written stays as it is.
+void learn_machine_rates(std::span<const StageCost> predicted, const StageLog& ran,
+                         StageRates rates);
+
 /// The key of a set of rates: processor, number of threads, program version.
 struct MachineKey {
     std::string processor;

@@ -9,7 +9,6 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
-#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -91,11 +90,9 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
 }
 
 void print_stages(const bake::BakeResult& result) {
-    for (const auto* plan : {&result.plan, &result.volume_plan}) {
-        for (const bake::PlanEntry& entry : *plan) {
-            print_note(fmt::format("{} {} for {}: {}", entry.name, entry.on ? "on" : "off",
-                                   printable(entry.subject.name), printable(entry.reason)));
-        }
+    for (const bake::PlanEntry& entry : result.plan) {
+        print_note(fmt::format("{} {} for {}: {}", entry.name, entry.on ? "on" : "off",
+                               printable(entry.subject.name), printable(entry.reason)));
     }
     for (const bake::StageReport& stage : result.stages) {
         print_note(fmt::format("{:<32} {:>10}  {:>12} rays  peak {}", printable(stage.name),
@@ -119,16 +116,17 @@ std::vector<OutputFile> name_outputs(const BakeCommand& options) {
 
 // Predicted seconds of the stages, before a pilot changed any knob.
 Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
-                   const MachineRates& machine, const bake::BakeExtras& extras,
+                   const bake::MachineRates& machine, const bake::BakeExtras& extras,
                    const bake::BakeResult& result) {
     const bake::EffectTable& effects = bake::all_effects();
-    std::vector<bake::PlanEntry> first = bake::plan_bake(effects, scene, result.facts, wanted);
-    std::vector<bake::PlanEntry> others = result.volume_plan;
+    std::vector<bake::PlanEntry> first = result.plan;
+    bake::replace_entries(bake::Subject::Kind::material,
+                          bake::plan_bake(effects, scene, result.facts, wanted), first);
     const bake::Knobs budget =
         bake::with_model_error(effects, wanted, bake::find_model_error(first));
     return {bake::predict_costs({effects, scene, result.facts, budget, machine.rates,
                                  result.threads, extras.receiver_errors},
-                                first, others),
+                                first),
             machine.note};
 }
 
@@ -178,10 +176,9 @@ int run(const BakeCommand& options) {
     };
     auto result =
         require(bake::run_bake(bake::all_effects(), imported.scene, knobs, context, extras));
-    for (formats::Diagnostic& unmet :
-         bake::describe_unmet({bake::all_effects(), imported.scene, result.facts, result.knobs,
-                               result.plan, result.volume_plan},
-                              wanted)) {
+    for (formats::Diagnostic& unmet : bake::describe_unmet(
+             {bake::all_effects(), imported.scene, result.facts, result.knobs, result.plan},
+             wanted)) {
         result.warnings.push_back(std::move(unmet));
     }
     result.warnings = drop_said(std::move(result.warnings), warnings);
@@ -192,7 +189,7 @@ int run(const BakeCommand& options) {
                                       options.compression));
     const std::uint64_t bytes = file.bytes_written();
     std::size_t next = 0;
-    const MachineRates machine = find_machine_rates();
+    const bake::MachineRates machine = bake::find_machine_rates();
     const bake::CostRequest request{bake::all_effects(),
                                     imported.scene,
                                     result.facts,
@@ -200,7 +197,7 @@ int run(const BakeCommand& options) {
                                     machine.rates,
                                     result.threads,
                                     options.extras.receiver_errors};
-    const bake::CostPrediction used = bake::predict_costs(request, result.plan, result.volume_plan);
+    const bake::CostPrediction used = bake::predict_costs(request, result.plan);
     if (!options.report.empty()) {
         bake::predict_savings(request, result.plan);
         const Expectation expected = expect(imported.scene, knobs, machine, options.extras, result);
@@ -211,7 +208,7 @@ int run(const BakeCommand& options) {
         require(files[next].write(make_depfile(options.output, imported.scene.inputs)));
     }
     commit_outputs(files);
-    learn_machine_rates(machine.rates, used, result.stages);
+    bake::learn_machine_rates(used.stages, result.stages, machine.rates);
     if (context.on_progress) context.on_progress({"bake", 1, 1});
     if (options.verbose) {
         print_stages(result);

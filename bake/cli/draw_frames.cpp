@@ -3,10 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <utility>
 
+#include "bake/base/stage_log.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/outputs.h"
@@ -21,11 +21,6 @@ namespace {
 
 using formats::ErrorKind;
 using formats::make_error;
-using FrameClock = std::chrono::steady_clock;
-
-double elapsed_since(FrameClock::time_point start) {
-    return std::chrono::duration<double>(FrameClock::now() - start).count();
-}
 
 // Of all frames; `meter(camera)` draws the picture that it is chosen from.
 template <class Meter>
@@ -53,9 +48,9 @@ void write_frames(const FrameOptions& options, const runtime::Camera& camera, st
                               "frames written so far are whole"));
         }
         const double degrees = options.turn * drawing.frames / options.frames;
-        const auto start = FrameClock::now();
+        const auto start = bake::Clock::now();
         const auto picture = draw(runtime::orbit(camera, static_cast<float>(degrees)));
-        drawing.seconds += elapsed_since(start);
+        drawing.seconds += bake::seconds_since(start);
         require(write_picture(frame_path(options, drawing.frames), require(picture),
                               *drawing.exposure, options.tone_map));
         if (options.on_progress && options.frames > 1) {
@@ -69,13 +64,13 @@ void draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
                  std::uint32_t end, Drawing& drawing) {
     formats::Vec3 shaded_for = camera.eye;
     const runtime::PartLights lights = light.parts.lights();
-    auto start = FrameClock::now();
+    auto start = bake::Clock::now();
     std::vector<formats::Rgb> radiance = runtime::shade_for_picture(
         view, lights, shaded_for, shown.terms, options.threads, shown.emitters);
     const runtime::VolumeLight volumes = runtime::relight_volumes(
         view.volumes, lights.light[lights.of_volumes],
         {.terms = shown.terms, .emitters = shown.emitters, .threads = options.threads});
-    print_seconds(options, "dot products", elapsed_since(start));
+    print_seconds(options, "dot products", bake::seconds_since(start));
     runtime::SoftwareOptions software;
     software.volumes = &volumes;
     software.lights = lights;
@@ -86,12 +81,12 @@ void draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
     runtime::SpecularLight specular;
     if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
         needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
-        start = FrameClock::now();
+        start = bake::Clock::now();
         const OpenedLight mirrored = light.layers.mirrored(light.sky);
         specular = runtime::make_specular_light(mirrored.environment, needs, mirrored.rotation,
                                                 options.threads);
         software.specular = &specular;
-        print_seconds(options, "mirrored light", elapsed_since(start));
+        print_seconds(options, "mirrored light", bake::seconds_since(start));
     }
     const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
         return primitive.shading != formats::Shading::diffuse;
@@ -114,22 +109,6 @@ void draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
         [&](const runtime::Camera& at) { return draw(at, metering); });
 }
 
-#ifdef OPALINE_HAS_GL
-// A renderer for this light: the one of the light before, unless surfaces mirror what has changed.
-formats::Status prepare_renderer(const formats::AssetView& view, const PictureLight& light,
-                                 Drawing& drawing) {
-    if (drawing.renderer && !(light.layers.parts && runtime::specular_needs(view).any())) {
-        return formats::ok_status();
-    }
-    runtime::GlOptions upload;
-    if (light.layers.parts) upload.mirrored = &light.layers.parts->mirrored();
-    auto renderer = runtime::GlRenderer::create(view, light.sky.environment, upload);
-    if (!renderer) return renderer.error();
-    drawing.renderer.emplace(std::move(*renderer));
-    return formats::ok_status();
-}
-#endif
-
 void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
                  [[maybe_unused]] const formats::AssetView& view,
                  [[maybe_unused]] const PictureLight& light,
@@ -137,7 +116,7 @@ void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
                  [[maybe_unused]] std::uint32_t end, [[maybe_unused]] Drawing& drawing) {
 #ifdef OPALINE_HAS_GL
     const bool is_first = !drawing.renderer;
-    const auto prepared = prepare_renderer(view, light, drawing);
+    const auto prepared = prepare_renderer(view, light, drawing.renderer);
     if (!prepared && options.backend == Backend::automatic && drawing.frames == 0) {
         drawing.lacks_gl = true;
         print_note("opaline: drawing on the CPU, as OpenGL cannot be used: " +
@@ -150,8 +129,7 @@ void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
         refuse(std::move(error));
     }
     runtime::GlRenderer& renderer = *drawing.renderer;
-    require(renderer.set_light(light.parts.lights(), light.sky.rotation, shown.emitters));
-    if (shown.background && light.layers.layers) require(renderer.set_layers(*light.layers.layers));
+    require(light_renderer(light, shown, renderer));
     if (options.stats && is_first) {
         fmt::print("{:<16} {}\n", "device", renderer.stats().device);
         print_seconds(options, "upload", renderer.stats().upload_seconds);
@@ -179,6 +157,30 @@ void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
 }
 
 }  // namespace
+
+#ifdef OPALINE_HAS_GL
+formats::Status prepare_renderer(const formats::AssetView& view, const PictureLight& light,
+                                 std::optional<runtime::GlRenderer>& renderer) {
+    if (renderer && !(light.layers.parts && runtime::specular_needs(view).any())) {
+        return formats::ok_status();
+    }
+    runtime::GlOptions upload;
+    if (light.layers.parts) upload.mirrored = &light.layers.parts->mirrored();
+    renderer.reset();  // its memory first
+    auto made = runtime::GlRenderer::create(view, light.sky.environment, upload);
+    if (!made) return made.error();
+    renderer.emplace(std::move(*made));
+    return formats::ok_status();
+}
+
+formats::Status light_renderer(const PictureLight& light, const Shown& shown,
+                               runtime::GlRenderer& renderer) {
+    auto status = renderer.set_light(light.parts.lights(), light.sky.rotation, shown.emitters);
+    return status && shown.background && light.layers.layers
+               ? renderer.set_layers(*light.layers.layers)
+               : status;
+}
+#endif
 
 std::string frame_path(const FrameOptions& options, std::uint32_t frame) {
     if (options.frames == 1) return options.output;

@@ -76,6 +76,15 @@ void draw_frames(const FrameOptions& options, const formats::AssetView& view,
                  const PictureLight& light, const runtime::Camera& camera, Shown shown,
                  std::uint32_t end, Drawing& drawing);
 
+#ifdef OPALINE_HAS_GL
+/// A renderer for this light: the one that there is, unless surfaces mirror what has changed.
+formats::Status prepare_renderer(const formats::AssetView& view, const PictureLight& light,
+                                 std::optional<runtime::GlRenderer>& renderer);
+/// Gives it the light, and the layers where they are shown.
+formats::Status light_renderer(const PictureLight& light, const Shown& shown,
+                               runtime::GlRenderer& renderer);
+#endif
+
 /// A line of `--stats`.
 void print_seconds(const FrameOptions& options, const char* name, double seconds);
 

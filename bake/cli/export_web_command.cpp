@@ -16,6 +16,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "bake/base/interrupted.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
@@ -32,12 +33,6 @@ namespace {
 using formats::ErrorKind;
 using formats::make_error;
 using formats::Status;
-
-// A file of a folder that is written.
-struct FolderFile {
-    std::string name;  //< without a path
-    std::string_view text;
-};
 
 Status refuse_write(const std::filesystem::path& folder, const char* doing) {
     return make_error(ErrorKind::resource, folder.string(), "",
@@ -127,14 +122,14 @@ Status check_folder(const std::filesystem::path& folder,
 // there before is removed afterwards. Links are followed. On a file system that cannot exchange
 // two folders, none of that name exists for a moment.
 // Errors: resource; nothing has changed then.
-Status write_folder(const std::filesystem::path& folder, std::span<const FolderFile> files) {
+Status write_folder(const std::filesystem::path& folder, std::span<const runtime::PageFile> files) {
     std::filesystem::path target = formats::resolve_links(folder);
     if (!target.has_filename()) target = target.parent_path();  // DIR/
     std::error_code error;
     std::filesystem::create_directories(target.parent_path(), error);
     TemporaryOutput fresh(target.parent_path());
     if (fresh.path().empty()) return refuse_write(folder, "make it");
-    for (const FolderFile& file : files) {
+    for (const runtime::PageFile& file : files) {
         auto written = formats::write_file_atomically(
             std::filesystem::path(fresh.path()) / file.name, file.text);
         if (!written) return written;
@@ -198,17 +193,12 @@ int run(const ExportWebCommand& options) {
     const auto page = require(
         runtime::make_web_page(view, lights, std::filesystem::path(options.path).stem().string(),
                                options.path, options.threads));
-    if (interrupted.load()) {
-        refuse(formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                   "nothing was written"));
-    }
-    std::vector<FolderFile> files;
+    if (interrupted.load()) refuse(bake::interrupted());
     std::size_t bytes = 0;
     for (const runtime::PageFile& file : page) {
-        files.push_back({file.name, file.text});
         bytes += file.text.size();
     }
-    require(write_folder(options.folder, files));
+    require(write_folder(options.folder, page));
     print_note(
         fmt::format("{}: {} with {} lights; open {}", printable(options.folder),
                     format_bytes(static_cast<double>(bytes)), lights.size(),

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <string_view>
 #include <utility>
 
+#include "bake/base/stage_log.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -192,20 +192,26 @@ LightWithLayers light_layers_of(const formats::AssetView& view, const OpenedLigh
                                 double time, unsigned threads) {
     LightWithLayers lit;
     if (view.clouds.empty()) return lit;
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = bake::Clock::now();
     lit.layers = runtime::light_layers(view.clouds, above.environment, above.rotation,
                                        {.time = time, .threads = threads});
-    if (!view.primitives.empty() || !view.volumes.empty()) {
+    if (has_rows(view)) {
         const runtime::LayerScene scene{*lit.layers, above.environment, above.rotation};
         lit.parts = runtime::environments_of_parts(
             scene, view, runtime::volume_corners(view.volumes), centre_of(view), threads);
     }
-    lit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    lit.seconds = bake::seconds_since(start);
     return lit;
 }
 
-PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& above, std::uint32_t n,
-                          unsigned threads) {
+bool has_rows(const formats::AssetView& view) {
+    return !view.primitives.empty() || !view.volumes.empty();
+}
+
+PartVectors project_parts(const formats::AssetView& view, const LightWithLayers& layers,
+                          const OpenedLight& above, unsigned threads) {
+    const std::uint32_t n = view.cubemap_size;
+    if (!has_rows(view)) return {{}, {runtime::project_environment({}, n, {}, threads)}};
     if (!layers.parts) {
         return {{}, {runtime::project_environment(above.environment, n, above.rotation, threads)}};
     }

@@ -85,9 +85,11 @@ struct PartVectors {
 
     runtime::PartLights lights() const { return {vector, points.of_primitive, points.of_volumes}; }
 };
-/// For a cube map of n x n texels.
-PartVectors project_parts(const LightWithLayers& layers, const OpenedLight& above, std::uint32_t n,
-                          unsigned threads);
+/// Whether there is anything but cloud layers, which need no light vector.
+bool has_rows(const formats::AssetView& view);
+/// Black where no rows are.
+PartVectors project_parts(const formats::AssetView& view, const LightWithLayers& layers,
+                          const OpenedLight& above, unsigned threads);
 
 /// The option `--time` of commands that light layers. Valid range: 1e9 s on either side of 0.
 void add_time_option(const Command& command, double& time);

@@ -1,27 +1,22 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <iterator>
 #include <memory>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
-#include "bake/emitters/plan_emitters.h"
-#include "bake/layers/plan_layers.h"
+#include "bake/pipeline/plan_scene.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/cancel_flaps.h"
 #include "bake/scene/even_media.h"
-#include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
-#include "bake/volumes/plan_volumes.h"
-#include "bake/volumes/volume_effects.h"
 
 namespace opaline::cli {
 namespace {
@@ -56,33 +51,25 @@ int run(const PlanCommand& options) {
     const auto evened =
         bake::takes_even_media(effects, knobs) ? bake::even_media(imported.scene) : std::nullopt;
     const formats::Scene& scene = evened ? evened->scene : imported.scene;
-    const bake::SceneFacts facts = bake::inspect_scene(scene);
-    auto plan = bake::plan_bake(effects, scene, facts, knobs);
-    bake::VolumePlan planned = bake::plan_volumes(scene, knobs);
-    std::vector<bake::PlanEntry> volumes = std::move(planned.entries);
-    std::ranges::copy(bake::plan_layers(scene, knobs).entries, std::back_inserter(volumes));
-    const bake::EmitterPlan emitters = bake::plan_emitters(scene, knobs);
-    require(bake::check_lamps(
-        scene, bake::count_emitters(emitters.lamps, bake::count_glowing(planned.layouts)),
-        bake::kEmitters));
-    std::ranges::copy(emitters.entries, std::back_inserter(volumes));
-    std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, facts);
+    bake::ScenePlan plan = bake::plan_scene(effects, scene, knobs);
+    require(bake::check_lamps(scene, plan.count_emitters(), bake::kEmitters));
+    std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, plan.facts);
     if (evened) {
         warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());
     }
     for (formats::Diagnostic& unmet :
-         bake::describe_unmet({effects, scene, facts, knobs, plan, volumes}, wanted)) {
+         bake::describe_unmet({effects, scene, plan.facts, knobs, plan.entries}, wanted)) {
         warnings.push_back(std::move(unmet));
     }
     require(report_warnings(warnings));
-    const bake::StageRates rates = find_machine_rates().rates;
-    const bake::Knobs budget = bake::with_model_error(effects, knobs, bake::find_model_error(plan));
-    const bake::CostRequest request{effects, scene, facts, budget, rates, threads};
-    const bake::CostPrediction cost = bake::predict_costs(request, plan, volumes);
-    bake::predict_savings(request, plan);
-    plan.insert(plan.end(), volumes.begin(), volumes.end());
-    fmt::print("{}", options.json ? make_plan_json(budget, plan, cost)
-                                  : make_plan_table(budget, plan, cost, threads));
+    const bake::StageRates rates = bake::find_machine_rates().rates;
+    const bake::Knobs budget =
+        bake::with_model_error(effects, knobs, bake::find_model_error(plan.entries));
+    const bake::CostRequest request{effects, scene, plan.facts, budget, rates, threads};
+    const bake::CostPrediction cost = bake::predict_costs(request, plan.entries);
+    bake::predict_savings(request, plan.entries);
+    fmt::print("{}", options.json ? make_plan_json(budget, plan.entries, cost)
+                                  : make_plan_table(budget, plan.entries, cost, threads));
     return kExitSuccess;
 }
 

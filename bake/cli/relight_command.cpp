@@ -142,7 +142,7 @@ int run(const RelightCommand& options) {
         print_note("opaline: the file has a cloud layer alone, which opaline render shows");
     }
     std::vector<formats::Rgb> radiance(view.receivers());
-    const PartVectors parts = project_parts(layers, light, view.cubemap_size, options.threads);
+    const PartVectors parts = project_parts(view, layers, light, options.threads);
     const runtime::PartLights lights = parts.lights();
     runtime::shade(view, lights, radiance, shading);
     write_volumes(options, view.volumes, lights.light[lights.of_volumes], shading);

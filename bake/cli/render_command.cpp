@@ -1,9 +1,9 @@
 #include <fmt/core.h>
 
-#include <chrono>
 #include <memory>
 #include <optional>
 
+#include "bake/base/stage_log.h"
 #include "bake/cli/command.h"
 #include "bake/cli/draw_frames.h"
 #include "bake/cli/error_map.h"
@@ -58,15 +58,10 @@ void draw_at(const RenderCommand& options, const formats::AssetView& view, const
     if (options.frame.stats && layers.parts) {
         fmt::print("{:<16} {}\n", "light points", layers.parts->at_point.size());
     }
-    // A file without rows, a cloud layer alone, needs no light vector.
-    const OpenedLight none;
-    const bool has_rows = !view.primitives.empty() || !view.volumes.empty();
-    const auto start = std::chrono::steady_clock::now();
-    const PictureLight picture_light{
-        light, layers,
-        project_parts(layers, has_rows ? light : none, view.cubemap_size, options.frame.threads)};
-    print_seconds(options.frame, "light vector",
-                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    const auto start = bake::Clock::now();
+    const PictureLight picture_light{light, layers,
+                                     project_parts(view, layers, light, options.frame.threads)};
+    print_seconds(options.frame, "light vector", bake::seconds_since(start));
     draw_frames(options.frame, view, picture_light, camera, shown, end, drawing);
 }
 

@@ -15,23 +15,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-template <class... Plans>
-Json plan_array(const Plans&... plans) {
+Json plan_array(const std::vector<bake::PlanEntry>& plan) {
     Json array = Json::array();
-    for (const std::vector<bake::PlanEntry>* plan : {&plans...}) {
-        for (const bake::PlanEntry& entry : *plan) {
-            array.push_back({{"effect", entry.name},
-                             {"subject", entry.subject.name},
-                             {"decision", entry.on ? "on" : "off"},
-                             {"forced", entry.forced},
-                             {"reason", entry.reason},
-                             {"bound", entry.bound},
-                             {"model_error", entry.model_error},
-                             {"predicted_seconds", entry.predicted_seconds},
-                             {"predicted_bytes", entry.predicted_bytes},
-                             {"saved_seconds", entry.saved_seconds},
-                             {"saved_bytes", entry.saved_bytes}});
-        }
+    for (const bake::PlanEntry& entry : plan) {
+        array.push_back({{"effect", entry.name},
+                         {"subject", entry.subject.name},
+                         {"decision", entry.on ? "on" : "off"},
+                         {"forced", entry.forced},
+                         {"reason", entry.reason},
+                         {"bound", entry.bound},
+                         {"model_error", entry.model_error},
+                         {"predicted_seconds", entry.predicted_seconds},
+                         {"predicted_bytes", entry.predicted_bytes},
+                         {"saved_seconds", entry.saved_seconds},
+                         {"saved_bytes", entry.saved_bytes}});
     }
     return array;
 }
@@ -102,7 +99,7 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     report["seed"] = result.knobs.seed;
     report["threads"] = result.threads;
     report["knobs"] = bake::knobs_json(result.knobs);
-    report["plan"] = plan_array(result.plan, result.volume_plan);
+    report["plan"] = plan_array(result.plan);
     report["stages"] = Json::array();
     std::vector<bake::StageCost> costs = expected.cost.stages;
     for (const bake::StageReport& stage : result.stages) {

@@ -15,7 +15,6 @@
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
-#include "bake/cli/machine_rates.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
@@ -99,7 +98,7 @@ int run(const SweepCommand& options) {
     wanted.bake = options_of_bake;
     wanted.seconds = std::max(0.0, options.seconds - bake::seconds_since(start));
     wanted.light = options.light;
-    wanted.rates = find_machine_rates().rates;
+    wanted.rates = bake::find_machine_rates().rates;
     bake::Context context;
     context.threads = options.scene.bake.threads;
     context.cancel = &interrupted;

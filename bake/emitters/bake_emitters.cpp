@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/base/interrupted.h"
 #include "bake/emitters/emitter_knobs.h"
 #include "bake/emitters/light_media.h"
 #include "bake/lamps/receiver_light.h"
@@ -65,11 +66,6 @@ void append_own_light(const formats::Scene& scene, std::span<const Lamp> lamps,
         }
     }
     std::ranges::sort(emitters.own, {}, &formats::OwnLight::primitive);
-}
-
-formats::Error interrupted_bake() {
-    return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                               "nothing was written");
 }
 
 }  // namespace
@@ -148,7 +144,7 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
         }
         return true;
     });
-    if (context.cancelled()) return interrupted_bake();
+    if (context.cancelled()) return interrupted();
     baked.error = run_stage(log, "self-check of emitters", [&](std::uint64_t& rays) {
         std::vector<std::uint32_t> glowing;
         for (const Lamp& lamp : job.lamps) {
@@ -159,7 +155,7 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
                                baked.emitters.view(), &light, volumes, grids},
                               job.knobs.seed, context, rays);
     });
-    if (context.cancelled()) return interrupted_bake();
+    if (context.cancelled()) return interrupted();
     for (std::size_t e = 0; e < sources.size(); ++e) {
         if (is_immersed(job.scene, job.rays, sources[e])) {
             baked.immersed.push_back(job.lamps[e].name);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <span>
 
 #include "bake/plan/bake_plan.h"
@@ -11,9 +10,7 @@ namespace opaline::bake {
 
 namespace emitter_knobs {
 inline bool is_lit(const RowLayout&, std::span<const PlanEntry> decisions) {
-    return std::ranges::any_of(decisions, [](const PlanEntry& entry) {
-        return entry.on && entry.subject.kind == Subject::Kind::emitter;
-    });
+    return is_on(decisions, Subject::Kind::emitter);
 }
 inline double particles_for(double error) {
     return error >= 0.1 ? 20000 : error >= 0.04 ? 100000 : error >= 0.015 ? 400000 : 1600000;

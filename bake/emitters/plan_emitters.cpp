@@ -1,14 +1,12 @@
 #include "bake/emitters/plan_emitters.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <numbers>
 #include <utility>
 
-#include "bake/emitters/emitter_knobs.h"
 #include "bake/lamps/point_box.h"
 #include "bake/plan/plan_input.h"
 #include "bake/volumes/largest_light.h"
@@ -62,19 +60,15 @@ double bound_on_surfaces(const formats::Scene& scene, const formats::Volume& vol
 }
 
 PlanEntry decide_volume(const formats::Scene& scene, const formats::Volume& volume,
-                        bool has_surfaces, const Knobs& knobs) {
-    PlanEntry entry;
-    entry.name = kEmitters;
+                        const Subject& subject, bool has_surfaces, const Knobs& knobs) {
+    constexpr std::size_t kDecisions = 2;  // on it and on its own light (plan_volumes)
+    PlanEntry entry = decide_by_bound(
+        kEmitters, subject, has_surfaces ? bound_on_surfaces(scene, volume) : 0, kDecisions, knobs);
     entry.has_bands = true;
-    entry.bound = has_surfaces ? bound_on_surfaces(scene, volume) : 0;
-    const double least =
-        knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 8) : kLeastBound;
-    entry.on = entry.bound >= least;
-    if (!entry.on && knobs.simulate_all && entry.bound > 0) entry.on = entry.forced = true;
-    entry.reason = entry.on       ? "a volume glows: surfaces have rows of its light"
-                   : has_surfaces ? "too far from surfaces to be seen on them"
-                                  : "there is no surface that it could light";
-    if (entry.forced) entry.reason += "; forced: by its bound it would be left out";
+    explain(entry, "a volume glows: surfaces have rows of its light",
+            has_surfaces ? "too far from surfaces to be seen on them"
+                         : "there is no surface that it could light");
+    tell_forced(entry);
     return entry;
 }
 
@@ -116,8 +110,6 @@ std::string describe_light(const formats::Scene& scene, const Lamp& lamp, double
     return text;
 }
 
-constexpr std::array<const KnobSpec*, 2> kKnobs{&kEmitterParticles, &kEmitterRays};
-
 }  // namespace
 
 EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
@@ -149,21 +141,13 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
                   .lights = {},
                   .volume = v,
                   .glow = glow++};
-        PlanEntry entry = decide_volume(scene, volume, has_surfaces, knobs);
-        entry.subject = {Subject::Kind::emitter, number++, "emitter '" + lamp.name + "'"};
+        const Subject subject{Subject::Kind::emitter, number++, "emitter '" + lamp.name + "'"};
+        PlanEntry entry = decide_volume(scene, volume, subject, has_surfaces, knobs);
         if (entry.on) plan.lamps.push_back(lamp);
         lamps.push_back(std::move(lamp));
         plan.entries.push_back(std::move(entry));
     }
     return plan;
-}
-
-EffectDescriptor describe_emitters(Effect id) {
-    return {.id = id,
-            .name = kEmitters,
-            .help = "light of lamps, glowing surfaces and lights in the scene",
-            .knobs = kKnobs,
-            .concerns_emitters = true};
 }
 
 }  // namespace opaline::bake

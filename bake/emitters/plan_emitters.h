@@ -4,14 +4,9 @@
 
 #include "bake/lamps/lamps.h"
 #include "bake/plan/bake_plan.h"
-#include "bake/plan/effect.h"
 #include "bake/plan/knobs.h"
 
 namespace opaline::bake {
-
-/// Light of lamps in the scene. Emitters are no materials: the effect has no rules for them, and
-/// its rows are stored beside those of the environment (plan_emitters.h, bake_emitters.h).
-EffectDescriptor describe_emitters(Effect id);
 
 struct EmitterPlan {
     std::vector<PlanEntry> entries;  ///< one a lamp or volume that glows; they belong to no rule

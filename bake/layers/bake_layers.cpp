@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "bake/base/interrupted.h"
 #include "bake/layers/layer_knobs.h"
 #include "bake/layers/layer_tables.h"
 #include "bake/layers/plan_layers.h"
@@ -150,10 +151,7 @@ formats::Result<BakedLayers> bake_layers(const LayerJob& job, const Context& con
             }
             return true;
         });
-        if (context.cancelled()) {
-            return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                       "nothing was written");
-        }
+        if (context.cancelled()) return interrupted();
         baked.clouds.records.push_back(record);
         baked.droplets.push_back(std::move(*droplets));
     }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <span>
 
 #include "bake/plan/bake_plan.h"
@@ -13,17 +12,8 @@ namespace opaline::bake {
 
 namespace layer_knobs {
 inline bool is_cloudy(const RowLayout&, std::span<const PlanEntry> decisions) {
-    return std::ranges::any_of(decisions, [](const PlanEntry& entry) {
-        return entry.on && entry.subject.kind == Subject::Kind::layer;
-    });
+    return is_on(decisions, Subject::Kind::layer);
 }
-// Steps of the sweep: sizes of the tables with the same work each time, about, and steps of radii.
-inline constexpr std::array kStepLadder{1.0, 0.3, 0.1, 0.05, 0.03, 0.02};
-inline constexpr std::array kStepDiagonal{0.3, 0.2, 0.1, 0.05, 0.03};
-inline constexpr std::array kStepTruths{0.01, 0.02};
-inline constexpr std::array kNodeLadder{8.0, 12.0, 15.0, 18.0, 24.0, 32.0};
-inline constexpr std::array kNodeDiagonal{12.0, 15.0, 18.0, 24.0, 32.0};
-inline constexpr std::array kNodeTruths{40.0, 32.0};
 // What the presets err by: tests/bench/RESULTS.md, "Cloud layers".
 inline double step_for(double error) {
     return error >= 0.06 ? 0.3 : error >= 0.02 ? 0.1 : error >= 0.008 ? 0.03 : 0.02;
@@ -47,9 +37,9 @@ inline constexpr KnobSpec kCloudStep{
     .preset = {0.3, 0.1, 0.03, 0.02},
     .for_target = layer_knobs::step_for,
     .label = "droplet step %g",
-    .ladder = layer_knobs::kStepLadder,
-    .diagonal = layer_knobs::kStepDiagonal,
-    .truths = layer_knobs::kStepTruths,
+    .ladder = {1.0, 0.3, 0.1, 0.05, 0.03, 0.02},
+    .diagonal = {0.3, 0.2, 0.1, 0.05, 0.03},
+    .truths = {0.01, 0.02},
     .theory = {.label = "step between droplets",
                .words = "resonances of spheres, narrower than the step, are met by chance",
                .rate = 0.5,
@@ -69,9 +59,9 @@ inline constexpr KnobSpec kCloudNodes{
     .preset = {12, 18, 24, 32},
     .for_target = layer_knobs::nodes_for,
     .label = "table of %g cosines",
-    .ladder = layer_knobs::kNodeLadder,
-    .diagonal = layer_knobs::kNodeDiagonal,
-    .truths = layer_knobs::kNodeTruths,
+    .ladder = {8.0, 12.0, 15.0, 18.0, 24.0, 32.0},
+    .diagonal = {12.0, 15.0, 18.0, 24.0, 32.0},
+    .truths = {40.0, 32.0},
     .theory = {.label = "cosines of a cloud layer's table",
                .words = "square of the distance between nodes, where radiance is smooth",
                .rate = -2},

@@ -18,13 +18,7 @@ constexpr unsigned kPlanRadii = 96;
 constexpr int kPlanStreams = 24;
 /// Of so few radii and streams: what is lost of the extinction, and of light scattered often.
 constexpr double kMargin = 1.05, kOftenMargin = 1.25;
-constexpr unsigned kEntries = 3;
-
-// Radiance below which an effect is left out: the entries of a layer share a quarter of the error.
-double least_bound(const Knobs& knobs) {
-    return knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / (4 * kEntries))
-                                  : kLeastBound;
-}
+constexpr std::size_t kDecisions = 3;  // on a layer
 
 double largest_albedo(const formats::CloudLayer& layer) {
     double most = 0;
@@ -58,30 +52,6 @@ double scattered_often(const DropletBand& band, double thickness) {
     return std::clamp(kOftenMargin * (1 - once_or_never), 0.0, 1.0);
 }
 
-PlanEntry decide(std::string_view name, std::string_view effect, const Subject& subject,
-                 double bound, const Knobs& knobs) {
-    PlanEntry entry;
-    entry.name = name;
-    entry.subject = subject;
-    entry.bound = bound;
-    if (!is_wanted(knobs, effect)) {
-        entry.reason = "left out by --effects";
-        return entry;
-    }
-    entry.on = !(bound < least_bound(knobs));  // an unknown bound is worth it
-    if (!entry.on && knobs.simulate_all && bound > 0) {
-        entry.on = entry.forced = true;
-    }
-    return entry;
-}
-
-void explain(PlanEntry& entry, const char* on, const char* off) {
-    if (entry.reason.empty()) {
-        entry.reason = entry.on ? on : off;
-    }
-    entry.reason += entry.forced ? "; forced: by its bound it would be left out" : "";
-}
-
 }  // namespace
 
 LayerBounds bound_layer(const formats::CloudLayer& layer) {
@@ -110,9 +80,10 @@ LayerPlan plan_layers(const formats::Scene& scene, const Knobs& knobs) {
         const formats::CloudLayer& layer = scene.layers[i];
         const Subject subject{Subject::Kind::layer, i, layer.name};
         const LayerBounds bounds = bound_layer(layer);
-        PlanEntry cloud = decide(kCloud, kCloud, subject, bounds.cloud, knobs);
-        PlanEntry often = decide(kCloudOften, kCloud, subject, bounds.often, knobs);
-        PlanEntry ground = decide(kRadiosity, kRadiosity, subject, bounds.radiosity, knobs);
+        PlanEntry cloud = decide_by_bound(kCloud, subject, bounds.cloud, kDecisions, knobs);
+        PlanEntry often = decide_by_bound(kCloudOften, subject, bounds.often, kDecisions, knobs);
+        PlanEntry ground =
+            decide_by_bound(kRadiosity, subject, bounds.radiosity, kDecisions, knobs);
         const char* const unseen = "the layer is so thin that it is not seen";
         explain(cloud,
                 layer.paper
@@ -131,6 +102,7 @@ LayerPlan plan_layers(const formats::Scene& scene, const Knobs& knobs) {
                                        : "the ground is black");
         plan.layouts.push_back({i, cloud.on, often.on, ground.on});
         for (PlanEntry* const entry : {&cloud, &often, &ground}) {
+            tell_forced(*entry);
             plan.entries.push_back(std::move(*entry));
         }
     }

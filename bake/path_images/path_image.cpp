@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/base/stage_log.h"
 #include "bake/path_images/scattered_light.h"
@@ -164,11 +165,6 @@ glm::dvec3 trace_view_ray(const Studio& studio, glm::vec3 direction, double x, d
 glm::dvec2 place_in_pixel(std::uint32_t i) {
     const glm::dvec2 at = 0.5 + static_cast<double>(i) * glm::dvec2(0.7548776662, 0.5698402910);
     return at - glm::floor(at);
-}
-
-formats::Result<PathImage> interrupted() {
-    return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                               "nothing was written");
 }
 
 }  // namespace

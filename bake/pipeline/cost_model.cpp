@@ -23,25 +23,16 @@
 namespace opaline::bake {
 namespace {
 
-PlanEntry* find_layer_entry(std::span<PlanEntry> plan, std::uint32_t layer, std::string_view name) {
-    const auto found = std::ranges::find_if(plan, [&](const PlanEntry& entry) {
-        return entry.subject.kind == Subject::Kind::layer && entry.subject.index == layer &&
-               entry.name == name;
-    });
-    return found == plan.end() ? nullptr : &*found;
-}
-
-// The stages of add_layers in order. `plan`: with the entries of plan_layers for the same scene,
-// which decide what is baked and pay for it. Without them everything is baked, and shared.
-void bill_layers(const CostRequest& request, std::span<PlanEntry> plan, Bill& bill) {
+// The stages of add_layers in order.
+void bill_layers(const CostRequest& request, Bill& bill) {
     for (std::uint32_t i = 0; i < request.scene.layers.size(); ++i) {
-        PlanEntry* const cloud = find_layer_entry(plan, i, kCloud);
-        PlanEntry* const often = find_layer_entry(plan, i, kCloudOften);
-        if (cloud != nullptr && !cloud->on) continue;
+        PlanEntry* const cloud = bill.payer(Subject::Kind::layer, i, kCloud);
+        PlanEntry* const often = bill.payer(Subject::Kind::layer, i, kCloudOften);
+        if (cloud == nullptr) continue;
         const formats::CloudLayer& layer = request.scene.layers[i];
         const LayerWork once = count_layer_work(layer, {i, true, false, false}, request.knobs);
-        const bool has_often = often == nullptr || often->on;
-        const LayerWork all = count_layer_work(layer, {i, true, has_often, false}, request.knobs);
+        const LayerWork all =
+            count_layer_work(layer, {i, true, often != nullptr, false}, request.knobs);
         bill.open("droplets of clouds");
         bill.add(droplet_work(once), cloud);
         bill.open("tables of clouds");
@@ -113,10 +104,8 @@ void bill_step(const CostedBake& bake, Step step, Bill& bill) {
         bool is_open = false;
         for (const CostedSubject& subject : bake.subjects) {
             const formats::Material& material = bake.request.scene.materials[subject.material];
-            EffectState state;
-            state.acts = subject.acts[e];
-            if (own.work == nullptr ||
-                !is_taken(effects[e], state, step, material, subject.layout)) {
+            if (!subject.acts[e] || own.work == nullptr ||
+                !is_taken(effects[e], step, material, subject.layout)) {
                 continue;
             }
             if (own.by_subject || !is_open) {
@@ -235,16 +224,12 @@ std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t band
     return details * (index_bytes + bands * knobs.code_bits / 8) + bands * (6 * 2 + 8) + 4;
 }
 
-CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan,
-                             std::span<PlanEntry> volume_plan) {
+CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan) {
     Bill bill(request.rates, request.threads, plan);
     CostedBake bake = make_costed_bake(request, plan);
     const CostedVolumes volumes = make_costed_volumes(request);
     bake.traces_rays = bake.traces_rays || (!volumes.empty() && request.facts.triangles > 0);
-    const bool has_lamps = std::ranges::any_of(volume_plan, [](const PlanEntry& entry) {
-        return entry.on && entry.subject.kind == Subject::Kind::emitter;
-    });
-    bill_placing(bake, has_lamps, bill);
+    bill_placing(bake, is_on(plan, Subject::Kind::emitter), bill);
     bill_step(bake, Step::study, bill);
     bill_shared_light(bake, bill);
     if (request.knobs.error_target > 0) {
@@ -259,9 +244,9 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill_row_stages(bake, bill);
     bill_openness(bake, bill);
     bill_self_check(bake, bill);
-    bill_volumes(request, volumes, count_rows(bake), volume_plan, bill);
-    bill_layers(request, volume_plan, bill);
-    bill_lamps(bake, volume_plan, bill);
+    bill_volumes(request, volumes, count_rows(bake), bill);
+    bill_layers(request, bill);
+    bill_lamps(bake, plan, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
     if (request.receiver_errors) {
         bill.add_bytes(sizeof(formats::ReceiverErrorsHead) +

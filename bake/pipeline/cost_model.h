@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -57,10 +56,7 @@ struct CostRequest {
 /// of a medium's profile width to the sample spacing. The clutter of a scene is not known:
 /// constants are those of a dented ball, and rates tell what earlier bakes took over them.
 ///
-/// Volumes cost what the layouts of plan_volumes ask for. `volume_plan`: their entries and those of
-/// layers, which get predictions of their own; empty: the costs count as shared, and layers are
-/// baked with everything.
-CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan,
-                             std::span<PlanEntry> volume_plan = {});
+/// Volumes cost what the layouts of plan_volumes ask for; what no entry of `plan` pays is shared.
+CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>& plan);
 
 }  // namespace opaline::bake

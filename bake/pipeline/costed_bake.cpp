@@ -106,28 +106,17 @@ Work work_of_points(const CostedBake& bake, const CostedSubject& subject, const 
     const CostRequest& request = bake.request;
     const auto& effects = request.effects.effects;
     const CostInput input{knobs, request.facts.triangles, request.facts.receivers};
-    const SubjectCost cost{input,
-                           request.scene.materials[subject.material],
-                           request.facts.material[subject.material],
-                           subject.layout,
-                           points,
-                           bake.traces_rays};
+    const SubjectCost cost = bake.cost_of(subject, points).with(input, subject.layout);
     Work all;
     for (std::size_t f = 0; f < effects.size(); ++f) {
-        EffectState state;
-        state.acts = subject.acts[f] && counts(f);
+        if (!subject.acts[f] || !counts(f)) continue;
         for (const Step step : {Step::samples, Step::prepare}) {
             const auto work = step_of(effects[f], step).work;
-            if (work != nullptr &&
-                is_taken(effects[f], state, step, cost.material, subject.layout)) {
+            if (work != nullptr && is_taken(effects[f], step, cost.material, subject.layout)) {
                 all += work(cost);
             }
         }
-        const GatherStep& gather = effects[f].gather;
-        if (state.acts && gather.work != nullptr &&
-            (gather.applies == nullptr || gather.applies(subject.layout))) {
-            all += gather.work(cost);
-        }
+        if (gathers(effects[f], subject.layout)) all += effects[f].gather.work(cost);
     }
     return all;
 }
@@ -150,12 +139,8 @@ void bill_rows(const CostedBake& bake, const CostedSubject& subject, double rece
             bake, subject, [&](PlanEntry& entry, const RowLayout& before, const RowLayout& after) {
                 if (entry.effect == effect.id && entry.rule > 0 && entry.on &&
                     rows_of(after) > rows_of(before)) {
-                    const SubjectCost less{cost.input, cost.material,  cost.facts,
-                                           before,     cost.receivers, cost.traces_rays};
-                    const SubjectCost more{cost.input, cost.material,  cost.facts,
-                                           after,      cost.receivers, cost.traces_rays};
-                    const Work growth =
-                        of_share(effect.gather.work(more) - effect.gather.work(less));
+                    const Work growth = of_share(effect.gather.work(cost.with(cost.input, after)) -
+                                                 effect.gather.work(cost.with(cost.input, before)));
                     bill.add(growth, &entry);
                     of_parts += growth;
                 }
@@ -190,7 +175,7 @@ void bill_encoding(const CostedBake& bake, const CostedSubject& subject, double 
 }
 
 Bill::Bill(const StageRates& rates, unsigned threads, std::vector<PlanEntry>& plan)
-    : rates_(rates), threads_(threads) {
+    : rates_(rates), plan_(plan), threads_(threads) {
     for (PlanEntry& entry : plan) {
         entry.predicted_seconds = 0;
         entry.predicted_bytes = 0;
@@ -215,6 +200,14 @@ void Bill::add_bytes(double bytes, PlanEntry* payer) {
     const auto whole = static_cast<std::uint64_t>(bytes);
     cost.bytes += whole;
     (payer != nullptr ? payer->predicted_bytes : cost.shared_bytes) += whole;
+}
+
+PlanEntry* Bill::payer(Subject::Kind kind, std::uint32_t subject, std::string_view name) const {
+    const auto found = std::ranges::find_if(plan_, [&](const PlanEntry& entry) {
+        return entry.on && entry.subject.kind == kind && entry.subject.index == subject &&
+               entry.name == name;
+    });
+    return found == plan_.end() ? nullptr : &*found;
 }
 
 }  // namespace opaline::bake

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "bake/pipeline/cost_model.h"
@@ -25,11 +26,14 @@ class Bill {
     void add(const Work& work, PlanEntry* payer = nullptr);
     /// Into the file.
     void add_bytes(double bytes, PlanEntry* payer = nullptr);
+    /// The decision of that name on a subject; null where it is off, or there is none.
+    PlanEntry* payer(Subject::Kind kind, std::uint32_t subject, std::string_view name) const;
 
     CostPrediction cost;
 
   private:
     const StageRates& rates_;
+    std::vector<PlanEntry>& plan_;
     double threads_;
     double factor_ = 1;  // of the stage that was opened last
 };

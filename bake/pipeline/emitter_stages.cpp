@@ -75,15 +75,6 @@ void warn_of_immersed(std::span<const std::string> immersed,
     }
 }
 
-// By material; of those without receivers as RowLayout begins.
-std::vector<RowLayout> layouts_of(const BakeInputs& bake, std::span<const SubjectState> subjects) {
-    std::vector<RowLayout> layouts(bake.scene.materials.size());
-    for (const SubjectState& subject : subjects) {
-        layouts[subject.material] = subject.layout;
-    }
-    return layouts;
-}
-
 formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
                             const Context& context, BakeResult& result) {
     if (std::ranges::none_of(result.asset.primitives, [](const formats::PrimitiveRecord& record) {
@@ -97,11 +88,7 @@ formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
                                    context);
         });
     if (!checked) return std::move(checked).error();
-    if (checked->receivers_checked > 0) {
-        result.error.by_effect.push_back({"emitters in media", checked->rms_relative});
-    } else {
-        result.error.not_measured.emplace_back("emitters in media");
-    }
+    result.error.add_part("emitters in media", checked->receivers_checked, checked->rms_relative);
     return formats::ok_status();
 }
 
@@ -133,7 +120,7 @@ std::optional<Work> work_of_media(const CostedBake& bake, std::size_t lamps, dou
 formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamps,
                               const Context& context, std::vector<SubjectState>& subjects,
                               BakeResult& result) {
-    const std::vector<RowLayout> layouts = layouts_of(bake, subjects);
+    const std::vector<RowLayout> layouts = layouts_of(bake.scene, subjects);
     const FinishedMedia finished{bake, result.plan, result.knobs, subjects};
     LitMedia media;
     if (std::ranges::any_of(layouts, &RowLayout::translucent)) {
@@ -145,11 +132,8 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                       context, result.stages);
     if (!baked) return std::move(baked).error();
     result.asset.emitters = std::move(baked->emitters);
-    if (baked->error.receivers_checked > 0) {
-        result.error.by_effect.push_back({std::string(kEmitters), baked->error.rms_relative});
-    } else {
-        result.error.not_measured.emplace_back(kEmitters);
-    }
+    result.error.add_part(std::string(kEmitters), baked->error.receivers_checked,
+                          baked->error.rms_relative);
     const double limit = result.knobs.error_target > 0 ? result.knobs.error_target
                                                        : acceptable_error(result.knobs.quality);
     if (baked->error.rms_relative > limit) {

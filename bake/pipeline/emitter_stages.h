@@ -18,8 +18,7 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                               const Context& context, std::vector<SubjectState>& subjects,
                               BakeResult& result);
 
-/// The stages of add_lamp_rows in order. `plan`: with the entries of plan_emitters for the same
-/// scene.
+/// The stages of add_lamp_rows in order.
 void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill);
 
 }  // namespace opaline::bake

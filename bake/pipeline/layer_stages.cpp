@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/accuracy/error_warnings.h"
+#include "bake/base/interrupted.h"
 #include "bake/layers/plan_layers.h"
 #include "bake/mie/droplets.h"
 
@@ -65,10 +66,7 @@ formats::Status add_layers(const formats::Scene& scene, std::span<const LayerLay
                 return check_layer(clouds, clouds.records[i], baked->droplets[i], result.knobs.seed,
                                    context);
             });
-        if (context.cancelled()) {
-            return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                       "nothing was written");
-        }
+        if (context.cancelled()) return interrupted();
         state_error(*result.layer_error, result.error);
         warn_of_layer(scene.layers[layouts[i].layer], result.knobs, *result.layer_error,
                       result.warnings);

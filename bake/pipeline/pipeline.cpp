@@ -8,14 +8,14 @@
 
 #include "bake/accuracy/error_warnings.h"
 #include "bake/accuracy/measure_error.h"
+#include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
-#include "bake/emitters/plan_emitters.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/row_sink.h"
-#include "bake/layers/plan_layers.h"
 #include "bake/pipeline/emitter_stages.h"
 #include "bake/pipeline/filtered_textures.h"
 #include "bake/pipeline/layer_stages.h"
+#include "bake/pipeline/plan_scene.h"
 #include "bake/pipeline/provenance.h"
 #include "bake/pipeline/shared_light.h"
 #include "bake/pipeline/volume_stages.h"
@@ -24,7 +24,6 @@
 #include "bake/rows/gather_rows.h"
 #include "bake/rows/shared_batches.h"
 #include "bake/scene/even_media.h"
-#include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/transport/bake_openness.h"
 #include "bake/transport/hidden_receivers.h"
@@ -33,13 +32,6 @@
 
 namespace opaline::bake {
 namespace {
-
-using formats::ErrorKind;
-using formats::make_error;
-
-formats::Error interrupted() {
-    return make_error(ErrorKind::interrupted, "", "", "interrupted", "nothing was written");
-}
 
 std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const RayScene& rays,
                                          const Context& context) {
@@ -95,9 +87,9 @@ formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
         }
         if (part.row_offset.size() != layout.terms() * set.size() + 1 ||
             !take_rows(sink, std::move(part))) {
-            return make_error(ErrorKind::resource, "", "transport",
-                              "more than 2^32 coefficients do not fit into one file",
-                              "lower --coefficients, or split the scene");
+            return formats::make_error(formats::ErrorKind::resource, "", "transport",
+                                       "more than 2^32 coefficients do not fit into one file",
+                                       "lower --coefficients, or split the scene");
         }
         errors.insert(errors.end(), gathered.receiver_error.begin(), gathered.receiver_error.end());
     }
@@ -128,34 +120,20 @@ std::vector<formats::Openness> bake_all_openness(const BakeInputs& bake,
     });
 }
 
-// One layout for each material, with the colours that the studies found for media shown as
-// surfaces.
-std::vector<RowLayout> final_layouts(const BakeInputs& bake,
-                                     std::span<const SubjectState> subjects) {
-    std::vector<RowLayout> layouts(bake.scene.materials.size());
-    for (const SubjectState& subject : subjects) {
-        RowLayout& layout = layouts[subject.material] = subject.layout;
-        for (std::size_t e = 0; e < subject.effects.size(); ++e) {
-            const EffectDescriptor& effect = bake.effects.effects[e];
-            if (effect.tint != nullptr && subject.effects[e].study != nullptr) {
-                layout.tint = effect.tint(*subject.effects[e].study);
-            }
-        }
-    }
-    return layouts;
-}
-
 // The plan after the studies: rules decide again with their findings.
-std::vector<PlanEntry> amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects,
-                                  const Knobs& knobs, const Context& context) {
-    return plan_bake(bake.effects, bake.scene, bake.facts, knobs, [&](PlanEntry& entry) {
-        const EffectDescriptor& effect = bake.effects[entry.effect];
-        const auto e = static_cast<std::size_t>(&effect - bake.effects.effects.data());
+void amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects, const Knobs& knobs,
+                const Context& context, std::vector<PlanEntry>& plan) {
+    const auto amend = [&](PlanEntry& entry) {
+        const auto e =
+            static_cast<std::size_t>(&bake.effects[entry.effect] - bake.effects.effects.data());
         const SubjectState& subject = state_of(subjects, entry.subject.index);
-        if (effect.amend != nullptr && subject.effects[e].study != nullptr) {
-            effect.amend(inputs_of(bake, subject, e, knobs, context), entry);
+        const DecisionRule& rule = rule_of(bake.effects, entry);
+        if (rule.amend != nullptr && subject.effects[e].study != nullptr) {
+            rule.amend(inputs_of(bake, subject, e, knobs, context), entry);
         }
-    });
+    };
+    replace_entries(Subject::Kind::material,
+                    plan_bake(bake.effects, bake.scene, bake.facts, knobs, amend), plan);
 }
 
 void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjects,
@@ -189,18 +167,18 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     }
     subjects = begin_subjects(unlit, result.plan, knobs);
     run_step(Step::study, unlit, knobs, context, subjects, log);
-    result.plan = amend_plan(unlit, subjects, knobs, context);
+    amend_plan(unlit, subjects, knobs, context, result.plan);
     settle_subjects(unlit, result.plan, knobs, subjects);
     knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
     const std::optional<OtherLight> light =
-        find_shared_light(unlit, knobs, context, final_layouts(unlit, subjects), subjects, log);
+        find_shared_light(unlit, knobs, context, layouts_of(unlit.scene, subjects), subjects, log);
     BakeInputs bake = unlit;
     bake.light = light ? &*light : nullptr;
     if (knobs.error_target > 0) {
         result.accuracy.emplace();
         knobs = choose_knobs(bake, knobs, context, {subjects, lights, log, *result.accuracy});
-        result.plan = amend_plan(bake, subjects, knobs, context);
+        amend_plan(bake, subjects, knobs, context, result.plan);
     } else {
         run_step(Step::samples, bake, knobs, context, subjects, log);
     }
@@ -211,7 +189,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     warn_of_models(bake, subjects, knobs, context, result.warnings);
     std::vector<formats::Openness> openness = bake_all_openness(bake, subjects, context, log);
     if (context.cancelled()) return interrupted();
-    result.asset = pack_asset(bake.scene, final_layouts(bake, subjects), std::move(rows->rows),
+    result.asset = pack_asset(bake.scene, layouts_of(bake.scene, subjects), std::move(rows->rows),
                               std::move(openness));
     result.receiver_errors = std::move(rows->receiver_error);
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
@@ -237,8 +215,8 @@ formats::Status check_model_of(const EffectTable& effects, const formats::Scene&
                                const Context& context, BakeResult& result) {
     ModelCheckOptions options;
     options.simulated = held_light(effects, result.plan);
-    options.lit_by_volumes = lights_surfaces(result.volume_plan);
-    options.volumes_see_surfaces = sees_surfaces(result.volume_plan);
+    options.lit_by_volumes = lights_surfaces(result.plan);
+    options.volumes_see_surfaces = sees_surfaces(result.plan);
     options.seed = result.knobs.seed;
     auto checked = run_stage(result.stages, "model check", [&](std::uint64_t&) {
         return check_model(scene, result.asset.view(), options, context);
@@ -270,22 +248,11 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         std::ranges::copy(evened->warnings, std::back_inserter(result.warnings));
     }
     const formats::Scene& scene = evened ? evened->scene : facing;
-    bool has_volumes = false;
-    std::size_t glowing = 0;
-    LayerPlan layers;
-    EmitterPlan emitters;
-    result.plan = run_stage(log, "plan", [&](std::uint64_t&) {
-        VolumePlan decided = plan_volumes(scene, wanted);
-        has_volumes = !decided.layouts.empty();
-        glowing = count_glowing(decided.layouts);
-        result.volume_plan = std::move(decided.entries);
-        layers = plan_layers(scene, wanted);
-        emitters = plan_emitters(scene, wanted);
-        result.facts = inspect_scene(scene);
-        return plan_bake(effects, scene, result.facts, wanted);
-    });
-    if (auto status = check_lamps(scene, count_emitters(emitters.lamps, glowing), kEmitters);
-        !status) {
+    ScenePlan plan =
+        run_stage(log, "plan", [&](std::uint64_t&) { return plan_scene(effects, scene, wanted); });
+    result.plan = std::move(plan.entries);
+    result.facts = std::move(plan.facts);
+    if (auto status = check_lamps(scene, plan.count_emitters(), kEmitters); !status) {
         return std::move(status).error();
     }
     if (extras.on_planned) {
@@ -295,7 +262,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     if (!sky) return std::move(sky).error();
     std::optional<RayScene> hierarchy;
     if (needs_hierarchy(layout_rows(effects, scene, result.plan, wanted)) ||
-        (has_volumes && !scene.primitives.empty()) || !emitters.lamps.empty()) {
+        (!plan.volumes.empty() && !scene.primitives.empty()) || !plan.lamps.empty()) {
         formats::Result<RayScene> built = run_stage(log, "hierarchy", [&](std::uint64_t&) {
             return RayScene::build(scene, context.threads);
         });
@@ -308,7 +275,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
     std::optional<ScenePyramids> textures;
     if (const auto filtered = filtered_materials(
-            scene, layout_rows(effects, scene, result.plan, wanted), !emitters.lamps.empty());
+            scene, layout_rows(effects, scene, result.plan, wanted), !plan.lamps.empty());
         !filtered.empty()) {
         textures = run_stage(log, "textures",
                              [&](std::uint64_t&) { return make_scene_pyramids(scene, filtered); });
@@ -318,8 +285,8 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     if (auto status = bake_inspected(bake, context, extras, subjects, result); !status) {
         return std::move(status).error();
     }
-    if (has_volumes) {
-        const std::vector<RowLayout> layouts = final_layouts(bake, subjects);
+    if (!plan.volumes.empty()) {
+        const std::vector<RowLayout> layouts = layouts_of(bake.scene, subjects);
         if (auto status = add_volumes({effects, scene, rays, receivers, layouts}, context, result);
             !status) {
             return std::move(status).error();
@@ -329,19 +296,17 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
             result.accuracy->met = result.accuracy->met && meets_target(result.error, result.knobs);
         }
     }
-    std::ranges::copy(layers.entries, std::back_inserter(result.volume_plan));
-    if (!layers.layouts.empty()) {
-        if (auto status = add_layers(scene, layers.layouts, context, result); !status) {
+    if (!plan.layers.empty()) {
+        if (auto status = add_layers(scene, plan.layers, context, result); !status) {
             return std::move(status).error();
         }
     }
-    std::ranges::copy(emitters.entries, std::back_inserter(result.volume_plan));
-    if (!emitters.lamps.empty()) {
-        if (auto status = add_lamp_rows(bake, emitters.lamps, context, subjects, result); !status) {
+    if (!plan.lamps.empty()) {
+        if (auto status = add_lamp_rows(bake, plan.lamps, context, subjects, result); !status) {
             return std::move(status).error();
         }
     }
-    number_glow(emitters.lamps, result);
+    number_glow(plan.lamps, result);
     if (wanted.check_model && !scene.primitives.empty()) {
         if (auto status = check_model_of(effects, facing, context, result); !status) {
             return std::move(status).error();

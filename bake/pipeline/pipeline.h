@@ -25,8 +25,7 @@ struct BakeResult {
     std::vector<float> receiver_errors;  ///< one for each receiver, where they are wanted
     Knobs knobs;                         ///< as used
     unsigned threads = 1;                ///< as used
-    std::vector<PlanEntry> plan;         ///< of materials
-    std::vector<PlanEntry> volume_plan;  ///< of volumes, then of layers and emitters
+    std::vector<PlanEntry> plan;         ///< as ScenePlan::entries, with what the stages found
     SceneFacts facts;                    ///< that the plan was decided from
     StageLog stages;
     ErrorReport error;

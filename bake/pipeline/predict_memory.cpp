@@ -58,8 +58,8 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
         }
         double terms = 1;
         for (const EffectDescriptor& effect : effects.effects) {
-            if (effect.typical_rows != nullptr) {
-                terms = std::max(terms, effect.typical_rows(*medium, knobs));
+            if (effect.gather.typical_rows != nullptr) {
+                terms = std::max(terms, effect.gather.typical_rows(*medium, knobs));
             }
         }
         counts.translucent_rows += vertices * (terms + (knobs.separate_terms ? 1 : 0));
@@ -108,7 +108,7 @@ MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& 
     const auto translucent_row = static_cast<double>(row_bytes(knobs, true, kBands));
     double samples = 0;  // of one medium
     for (const EffectDescriptor& effect : effects.effects) {
-        samples += effect.sample_bytes != nullptr ? effect.sample_bytes(knobs) : 0;
+        samples += effect.samples.bytes != nullptr ? effect.samples.bytes(knobs) : 0;
     }
     return {{{"the program", kProgram + kThread * threads},
              {"the scene", vertices * kVertex + indices * kIndex + counts.image_bytes},

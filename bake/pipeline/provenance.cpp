@@ -158,14 +158,12 @@ std::string make_provenance(const formats::Scene& scene, const BakeResult& resul
     }
     root["knobs"] = knobs_json(knobs);
     root["plan"] = Json::array();
-    for (const auto* plan : {&result.plan, &result.volume_plan}) {
-        for (const PlanEntry& entry : *plan) {
-            root["plan"].push_back({{"effect", entry.name},
-                                    {"subject", entry.subject.name},
-                                    {"decision", entry.on ? "on" : "off"},
-                                    {"reason", entry.reason},
-                                    {"bound", entry.bound}});
-        }
+    for (const PlanEntry& entry : result.plan) {
+        root["plan"].push_back({{"effect", entry.name},
+                                {"subject", entry.subject.name},
+                                {"decision", entry.on ? "on" : "off"},
+                                {"reason", entry.reason},
+                                {"bound", entry.bound}});
     }
     root["error"] = error_json(result.error);
     root["error"]["model_estimate"] = knobs.model_error;

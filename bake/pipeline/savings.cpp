@@ -22,7 +22,7 @@ Cost cost_of(const std::vector<PlanEntry>& plan, std::uint32_t material) {
 }
 
 bool is_saved(const PlanEntry& entry) {
-    return !entry.on && !entry.alternative;
+    return entry.subject.kind == Subject::Kind::material && !entry.on && !entry.alternative;
 }
 
 }  // namespace

@@ -20,24 +20,23 @@ bool sends_out_light(const formats::Scene& scene) {
 
 bool is_concerned(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs,
                   std::string_view name) {
-    const auto& all = effects.effects;
-    if (std::ranges::any_of(all, [&](const EffectDescriptor& effect) {
-            return effect.name == name && ((effect.concerns_volumes && !scene.volumes.empty()) ||
-                                           (effect.concerns_layers && !scene.layers.empty()) ||
-                                           (effect.concerns_emitters && sends_out_light(scene)));
-        })) {
-        return true;
+    const auto found = std::ranges::find(effects.effects, name, &EffectDescriptor::name);
+    if (found == effects.effects.end()) return false;
+    switch (found->kind) {
+        case Subject::Kind::volume:
+            return !scene.volumes.empty();
+        case Subject::Kind::layer:
+            return !scene.layers.empty();
+        case Subject::Kind::emitter:
+            return sends_out_light(scene);
+        case Subject::Kind::material:
+            break;
     }
     const MaterialFacts unknown;  // placeholder: concerns() reads the material only
-    return std::any_of(
-        scene.primitives.begin(), scene.primitives.end(), [&](const formats::Primitive& p) {
-            const PlanInput input{scene.materials[p.material], unknown, knobs};
-            return std::any_of(effects.effects.begin(), effects.effects.end(),
-                               [&](const EffectDescriptor& effect) {
-                                   return effect.name == name && !effect.rules.empty() &&
-                                          effect.rules.front().concerns(input);
-                               });
-        });
+    return !found->rules.empty() &&
+           std::ranges::any_of(scene.primitives, [&](const formats::Primitive& p) {
+               return found->rules.front().concerns({scene.materials[p.material], unknown, knobs});
+           });
 }
 
 std::string concerns_nothing(const std::string& effect) {
@@ -50,12 +49,10 @@ void describe_effects(const DecidedBake& decided, std::vector<Diagnostic>& warni
     for (const std::string& effect : decided.knobs.effects) {
         const PlanEntry* left_out = nullptr;
         bool is_on = false;
-        for (const auto& plan : {decided.plan, decided.volume_plan}) {
-            for (const PlanEntry& entry : plan) {
-                if (entry.name == effect) {
-                    is_on = is_on || entry.on || entry.all_orders;  // another effect has its light
-                    left_out = &entry;
-                }
+        for (const PlanEntry& entry : decided.plan) {
+            if (entry.name == effect) {
+                is_on = is_on || entry.on || entry.all_orders;  // another effect has its light
+                left_out = &entry;
             }
         }
         if (is_on) continue;
@@ -81,7 +78,7 @@ void describe_options(const DecidedBake& decided, const BakeOptions& options,
         for (std::uint32_t m = 0; m < layouts.size(); ++m) {
             if (knob.matters(layouts[m], entries_of(decided.plan, m))) return true;
         }
-        return knob.matters({}, decided.volume_plan);
+        return knob.matters({}, decided.plan);
     };
     std::string idle;
     const auto list = [&](std::string_view option) {
@@ -137,13 +134,12 @@ std::vector<Diagnostic> describe_early(const DecidedBake& decided) {
             describe_missed_models(decided.knobs.error_target, find_model_error(decided.plan))) {
         warnings.push_back(std::move(*missed));
     }
-    for (const PlanEntry& entry : decided.plan) {
-        const EffectDescriptor& effect = decided.effects[entry.effect];
+    for (const PlanEntry& entry : entries_of(decided.plan, Subject::Kind::material)) {
+        const DecisionRule& rule = rule_of(decided.effects, entry);
         const std::uint32_t m = entry.subject.index;
-        if (effect.warn_of_plan != nullptr) {
-            effect.warn_of_plan(
-                {decided.scene.materials[m], decided.facts.material[m], decided.knobs}, entry,
-                warnings);
+        if (rule.warn != nullptr) {
+            rule.warn({decided.scene.materials[m], decided.facts.material[m], decided.knobs}, entry,
+                      warnings);
         }
     }
     return warnings;

@@ -20,7 +20,6 @@ struct DecidedBake {
     const SceneFacts& facts;
     const Knobs& knobs;  ///< as they were used
     std::span<const PlanEntry> plan;
-    std::span<const PlanEntry> volume_plan = {};  ///< of volumes and layers
 };
 
 /// That models err by more than was asked for; nothing: they do not, or `target` is 0.

@@ -14,15 +14,6 @@
 namespace opaline::bake {
 namespace {
 
-// The entry of a volume with a name that is on; null where there is none.
-PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string_view name) {
-    const auto found = std::ranges::find_if(plan, [&](const PlanEntry& entry) {
-        return entry.on && entry.subject.kind == Subject::Kind::volume &&
-               entry.subject.index == volume && entry.name == name;
-    });
-    return found == plan.end() ? nullptr : &*found;
-}
-
 // Walks of a volume that gather light of volumes: they fly as the others do, and sum emission along
 // their flights: through half of the volume as a guess, three channels at twice the time of one.
 Work glow_work(const VolumeWork& work, const VolumeLayout& layout) {
@@ -89,70 +80,59 @@ CostedVolumes make_costed_volumes(const CostRequest& request) {
 }
 
 void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, double row_count,
-                  std::span<PlanEntry> volume_plan, Bill& bill) {
-    for (PlanEntry& entry : volume_plan) {
-        entry.predicted_seconds = 0;
-        entry.predicted_bytes = 0;
-    }
+                  Bill& bill) {
     if (volumes.empty()) return;
-    const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
-    const auto for_each = [&](std::string_view name, auto&& visit) {
-        for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            visit(volumes.works[i], payer_of(volume_plan, volumes.layouts[i].whole, name));
-        }
+    const auto& [layouts, works] = volumes;
+    const Knobs& knobs = request.knobs;
+    const double receivers = request.facts.receivers;
+    const CostInput input{knobs, request.facts.triangles, receivers};
+    const auto payer = [&](std::size_t i, std::string_view name) {
+        return bill.payer(Subject::Kind::volume, layouts[i].whole, name);
     };
+    const VolumeCheckOptions check = volume_check_effort(works, layouts, knobs);
+    const double check_seconds = static_cast<double>(check.max_events) * kTracedCollision;
     bill.open("light in volumes");
-    for_each(kOnceInVolumes, [&](const VolumeWork& work, PlanEntry* payer) {
-        bill.add(attenuation_work(input, work), payer);
-        bill.add_bytes(volume_density_bytes(work));
-        bill.add_bytes(attenuated_row_bytes(work, request.knobs), payer);
-    });
-    if (sees_surfaces(volumes.layouts)) {
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        bill.add(attenuation_work(input, works[i]), payer(i, kOnceInVolumes));
+        bill.add_bytes(volume_density_bytes(works[i]));
+        bill.add_bytes(attenuated_row_bytes(works[i], knobs), payer(i, kOnceInVolumes));
+    }
+    if (sees_surfaces(layouts)) {
         bill.open("surfaces that volumes see");
-        const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
-        bill.add(seen_surfaces_work(input, volumes.works, request.facts.receivers, row_count),
-                 payer_of(volume_plan, first->whole, kSurfacesToVolumes));
+        const auto first = std::ranges::find(layouts, true, &VolumeLayout::sees_surfaces);
+        bill.add(seen_surfaces_work(input, works, receivers, row_count),
+                 payer(static_cast<std::size_t>(first - layouts.begin()), kSurfacesToVolumes));
     }
-    bill.open(scattering_stage(volumes.layouts));
-    for (std::size_t i = 0; i < volumes.works.size(); ++i) {
+    bill.open(scattering_stage(layouts));
+    for (std::size_t i = 0; i < works.size(); ++i) {
         // Walks and rows that light of the sky does not need are those of surfaces.
-        const VolumeLayout& layout = volumes.layouts[i];
-        PlanEntry* const payer = payer_of(volume_plan, layout.whole,
-                                          layout.sees_sky ? kOftenInVolumes : kSurfacesToVolumes);
-        bill.add(scattering_work(input, volumes.works[i]), payer);
-        bill.add_bytes(scattered_row_bytes(volumes.works[i], request.knobs), payer);
+        PlanEntry* const own = payer(i, layouts[i].sees_sky ? kOftenInVolumes : kSurfacesToVolumes);
+        bill.add(scattering_work(input, works[i]), own);
+        bill.add_bytes(scattered_row_bytes(works[i], knobs), own);
     }
-    if (std::ranges::any_of(volumes.layouts, &VolumeLayout::has_nodes)) {
-        const VolumeCheckOptions check =
-            volume_check_effort(volumes.works, volumes.layouts, request.knobs);
+    if (std::ranges::any_of(layouts, &VolumeLayout::has_nodes)) {
         double entries = 0;  // of all rows, once for each light
-        for (const VolumeWork& work : volumes.works) {
-            entries +=
-                work.nodes * work.bands * request.knobs[kVolumeCoefficients] * (check.probes + 1);
+        for (const VolumeWork& work : works) {
+            entries += work.nodes * work.bands * knobs[kVolumeCoefficients] * (check.probes + 1);
         }
         bill.open("self-check of volumes");
-        bill.add(
-            {0, static_cast<double>(check.max_events) * kTracedCollision + entries * kGatherEntry});
+        bill.add({0, check_seconds + entries * kGatherEntry});
     }
-    if (count_glowing(volumes.layouts) > 0) {
+    if (count_glowing(layouts) > 0) {
         bill.open("light of volumes");
-        for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            PlanEntry* const payer = payer_of(volume_plan, volumes.layouts[i].whole, kEmitters);
-            bill.add(glow_work(volumes.works[i], volumes.layouts[i]), payer);
-            bill.add_bytes(glow_bytes(volumes.works[i], volumes.layouts[i]), payer);
+        for (std::size_t i = 0; i < works.size(); ++i) {
+            bill.add(glow_work(works[i], layouts[i]), payer(i, kEmitters));
+            bill.add_bytes(glow_bytes(works[i], layouts[i]), payer(i, kEmitters));
         }
         bill.open("self-check of light of volumes");
-        const VolumeCheckOptions check =
-            volume_check_effort(volumes.works, volumes.layouts, request.knobs);
-        bill.add({0, static_cast<double>(check.max_events) * kTracedCollision});
+        bill.add({0, check_seconds});
     }
-    if (request.facts.receivers > 0) {
+    if (receivers > 0) {
         bill.open("shadows of volumes");
-        bill.add(dimming_work(input, volumes.works, request.facts.receivers, row_count));
-        for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            const VolumeLayout& layout = volumes.layouts[i];
-            bill.add(sent_light_work(input, volumes.works[i], layout, request.facts.receivers),
-                     payer_of(volume_plan, layout.whole, kVolumesToSurfaces));
+        bill.add(dimming_work(input, works, receivers, row_count));
+        for (std::size_t i = 0; i < works.size(); ++i) {
+            bill.add(sent_light_work(input, works[i], layouts[i], receivers),
+                     payer(i, kVolumesToSurfaces));
         }
     }
 }
@@ -193,9 +173,7 @@ void bill_other_trials(const CostedBake& bake, Bill& bill) {
             // What is gathered in batches is kept from trial to trial.
             const bool is_kept = effects[e].gather.gather_batch != nullptr;
             const SubjectCost in_bake = bake.cost_of(subject, (is_kept ? 1 : kRounds) * own);
-            const SubjectCost cost{traced,         in_bake.material,  in_bake.facts,
-                                   in_bake.layout, in_bake.receivers, in_bake.traces_rays};
-            bill.add(effects[e].gather.work(cost));
+            bill.add(effects[e].gather.work(in_bake.with(traced, subject.layout)));
         }
         bill.add(encode_work(bake.input, kEncodings * subject.layout.terms(),
                              subject.layout.bands(), own));

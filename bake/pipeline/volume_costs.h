@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <vector>
 
 #include "bake/pipeline/costed_bake.h"
@@ -29,9 +28,8 @@ struct CostedVolumes {
 CostedVolumes make_costed_volumes(const CostRequest& request);
 
 /// The stages of add_volumes in order, without those of qualities that a target error tries first.
-/// `volume_plan`: as plan_volumes made it for the same knobs; its entries pay and get their
-/// predictions. Empty: all share the costs. `row_count`: rows of all vertices.
+/// `row_count`: rows of all vertices.
 void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, double row_count,
-                  std::span<PlanEntry> volume_plan, Bill& bill);
+                  Bill& bill);
 
 }  // namespace opaline::bake

@@ -9,6 +9,7 @@
 
 #include "bake/accuracy/error_warnings.h"
 #include "bake/accuracy/volumes/volume_error.h"
+#include "bake/base/interrupted.h"
 #include "bake/volumes/bake_volumes.h"
 #include "bake/volumes/dim_surfaces.h"
 #include "bake/volumes/volume_knobs.h"
@@ -17,11 +18,6 @@
 
 namespace opaline::bake {
 namespace {
-
-formats::Error interrupted_volumes() {
-    return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                               "nothing was written");
-}
 
 // Volumes of one quality, and how far they err.
 struct BakedVolumes {
@@ -52,7 +48,7 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
     for (const MethodMeasure& measure : baked.findings.methods) {
         tell_method(measure, method_budget(knobs), baked.plan.entries);
     }
-    if (context.cancelled()) return interrupted_volumes();
+    if (context.cancelled()) return interrupted();
     baked.volumes = std::move(*volumes);
     if (std::ranges::none_of(baked.plan.layouts, &VolumeLayout::has_nodes)) return baked;
     formats::AssetView view = result.asset.view();
@@ -114,11 +110,7 @@ formats::Status measure_glow(const VolumeStages& inputs, const VolumeCheckOption
             return found;
         });
     if (!error) return std::move(error).error();
-    if (error->rays_checked > 0) {
-        result.error.by_effect.push_back({"light of volumes", error->rms_relative});
-    } else {
-        result.error.not_measured.emplace_back("light of volumes");
-    }
+    result.error.add_part("light of volumes", error->rays_checked, error->rms_relative);
     return formats::ok_status();
 }
 
@@ -126,7 +118,7 @@ formats::Status measure_glow(const VolumeStages& inputs, const VolumeCheckOption
 void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& knobs) {
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (effect.concerns_volumes) {
+            if (effect.kind == Subject::Kind::volume) {
                 knobs.set(*knob, baked.knobs[*knob]);
             }
         }
@@ -180,7 +172,7 @@ Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quali
     knobs.quality = quality;
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (effect.concerns_volumes && !knobs.is_given(*knob)) {
+            if (effect.kind == Subject::Kind::volume && !knobs.is_given(*knob)) {
                 knobs.set(*knob, knob->preset[static_cast<std::size_t>(quality)]);
             }
         }
@@ -230,7 +222,7 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
         !status) {
         return status;
     }
-    result.volume_plan = std::move(baked->plan.entries);
+    replace_entries(Subject::Kind::volume, baked->plan.entries, result.plan);
     result.volume_error = std::move(baked->error);
     if (result.asset.position.empty()) return formats::ok_status();
     const auto dimmed = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t& rays) {
@@ -246,9 +238,7 @@ formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
     if (!dimmed) {
         return dimmed.error();
     }
-    if (context.cancelled()) {
-        return interrupted_volumes();
-    }
+    if (context.cancelled()) return interrupted();
     add_encoding_error(*dimmed, result);
     return formats::ok_status();
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 
 #include "bake/plan/effect.h"
 #include "bake/plan/plan_input.h"
@@ -10,16 +11,12 @@
 namespace opaline::bake {
 namespace {
 
-constexpr double kShareOfError = 0.25;  // of the target, for all that is left out of a subject
-
-double least_bound(const EffectTable& effects, const PlanInput& input) {
-    if (!(input.knobs.error_target > 0)) return kLeastBound;
-    std::size_t rows = 0;
+std::size_t count_decisions(const EffectTable& effects, const PlanInput& input) {
+    std::size_t count = 0;
     for_each_rule(effects, [&](const EffectDescriptor&, const DecisionRule& rule, std::uint8_t) {
-        rows += rule.concerns(input) ? 1 : 0;
+        count += rule.concerns(input) ? 1 : 0;
     });
-    return std::min(kLeastBound, kShareOfError * input.knobs.error_target /
-                                     static_cast<double>(std::max<std::size_t>(1, rows)));
+    return count;
 }
 
 }  // namespace
@@ -42,7 +39,7 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
     std::vector<PlanEntry> plan;
     for (const Subject& subject : list_subjects(scene, facts)) {
         PlanInput input{scene.materials[subject.index], facts.material[subject.index], knobs};
-        input.least_bound = least_bound(effects, input);
+        input.least_bound = least_bound(knobs, count_decisions(effects, input));
         std::vector<PlanEntry> decisions;
         const auto decide = [&](const EffectDescriptor& effect, const DecisionRule& rule,
                                 std::uint8_t number) {
@@ -53,22 +50,19 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
             entry.rule = number;
             entry.name = rule.name;
             entry.subject = subject;
-            if (entry.forced) {
-                entry.reason += "; forced: by its bound it would be left out";
-            }
-            if (amend) {
-                amend(entry);
-            }
+            tell_forced(entry);
+            if (amend) amend(entry);
             decisions.push_back(std::move(entry));
         };
         for_each_rule(effects, decide);
-        plan.insert(plan.end(), decisions.begin(), decisions.end());
+        std::ranges::move(decisions, std::back_inserter(plan));
     }
     return plan;
 }
 
 double find_model_error(std::span<const PlanEntry> plan) {
     double most = 0;
+    plan = entries_of(plan, Subject::Kind::material);
     while (!plan.empty()) {
         const auto own = entries_of(plan, plan.front().subject.index);
         double square = 0;
@@ -84,7 +78,7 @@ double find_model_error(std::span<const PlanEntry> plan) {
 std::string list_choices(std::span<const PlanEntry> plan) {
     std::vector<std::string_view> seen;
     std::string list;
-    for (const PlanEntry& entry : plan) {
+    for (const PlanEntry& entry : entries_of(plan, Subject::Kind::material)) {
         if (!entry.choice.empty() && std::ranges::find(seen, entry.choice) == seen.end()) {
             seen.push_back(entry.choice);
             list += (list.empty() ? "" : ", ") + std::string(entry.choice);
@@ -95,18 +89,39 @@ std::string list_choices(std::span<const PlanEntry> plan) {
 
 const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view name,
                             std::uint32_t material) {
-    const auto entry = std::find_if(plan.begin(), plan.end(), [&](const PlanEntry& e) {
-        return e.name == name && e.subject.index == material;
-    });
-    return entry == plan.end() ? nullptr : &*entry;
+    const auto own = entries_of(plan, material);
+    const auto entry = std::ranges::find(own, name, &PlanEntry::name);
+    return entry == own.end() ? nullptr : &*entry;
 }
 
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material) {
-    const auto is_own = [&](const PlanEntry& e) { return e.subject.index == material; };
-    const auto first = std::find_if(plan.begin(), plan.end(), is_own);
-    const auto last = std::find_if_not(first, plan.end(), is_own);
-    return plan.subspan(static_cast<std::size_t>(first - plan.begin()),
-                        static_cast<std::size_t>(last - first));
+    const auto own =
+        std::ranges::equal_range(entries_of(plan, Subject::Kind::material), material, {},
+                                 [](const PlanEntry& e) { return e.subject.index; });
+    return {own.begin(), own.end()};
+}
+
+std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, Subject::Kind kind) {
+    const auto own =
+        std::ranges::equal_range(plan, kind, {}, [](const PlanEntry& e) { return e.subject.kind; });
+    return {own.begin(), own.end()};
+}
+
+bool is_on(std::span<const PlanEntry> plan, std::string_view name) {
+    return std::ranges::any_of(
+        plan, [&](const PlanEntry& entry) { return entry.on && entry.name == name; });
+}
+
+bool is_on(std::span<const PlanEntry> plan, Subject::Kind kind) {
+    return std::ranges::any_of(entries_of(plan, kind), &PlanEntry::on);
+}
+
+void replace_entries(Subject::Kind kind, std::span<const PlanEntry> entries,
+                     std::vector<PlanEntry>& plan) {
+    const auto old = entries_of(plan, kind);
+    const auto first = plan.begin() + (old.data() - plan.data());
+    const auto at = plan.erase(first, first + static_cast<std::ptrdiff_t>(old.size()));
+    plan.insert(at, entries.begin(), entries.end());
 }
 
 }  // namespace opaline::bake

@@ -13,10 +13,11 @@
 
 namespace opaline::bake {
 
-/// The subject of a decision. A material represents its surfaces and the medium inside.
+/// The subject of a decision. A material represents its surfaces and the medium inside. A whole
+/// plan has the decisions on materials first, then the others in the order of their kinds.
 struct Subject {
     enum class Kind : std::uint8_t { material, volume, layer, emitter } kind = Kind::material;
-    std::uint32_t index = 0;  ///< into Scene::materials, volumes or layers
+    std::uint32_t index = 0;  ///< into Scene::materials, volumes or layers; number of the emitter
     std::string name;         ///< for messages and reports: "material 'Floor'"
 };
 
@@ -25,7 +26,7 @@ enum class Effect : std::uint8_t;
 
 /// One decision: an effect, or a part of one, for a subject.
 struct PlanEntry {
-    Effect effect{};
+    Effect effect{};        ///< of decisions on materials; the others belong to no rule
     std::uint8_t rule = 0;  ///< index into the effect's rules
     std::string_view name;  ///< the rule's: the effect's, or effect.part (design: effect names)
     Subject subject;
@@ -52,9 +53,9 @@ struct PlanEntry {
 /// Findings of a decision's study; null: none.
 using AmendEntry = std::function<void(PlanEntry& entry)>;
 
-/// Decides what to simulate, from the scene alone: traces nothing. Subject by subject, and for each
-/// in the order of the effects and their rules: later ones see what `amend` made of earlier ones.
-/// `facts`: inspect_scene's.
+/// Decides what to simulate of materials, from the scene alone: traces nothing. Subject by subject,
+/// and for each in the order of the effects and their rules: later ones see what `amend` made of
+/// earlier ones. `facts`: inspect_scene's.
 std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
                                  const SceneFacts& facts, const Knobs& knobs,
                                  const AmendEntry& amend = {});
@@ -62,7 +63,7 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
 /// Largest known relative RMS error of a plan's models over its subjects.
 double find_model_error(std::span<const PlanEntry> plan);
 
-/// What the plan's effects chose, each once, in the order of the plan: "dipole, walks".
+/// What effects of materials chose, each once, in the order of the plan: "dipole, walks".
 std::string list_choices(std::span<const PlanEntry> plan);
 
 /// The subjects of a scene: materials that have receivers.
@@ -74,5 +75,16 @@ const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view na
 
 /// The entries of one material, which are consecutive.
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material);
+
+/// The entries on subjects of one kind, which are consecutive.
+std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, Subject::Kind kind);
+
+/// Whether a decision of that name, or on a subject of that kind, is on.
+bool is_on(std::span<const PlanEntry> plan, std::string_view name);
+bool is_on(std::span<const PlanEntry> plan, Subject::Kind kind);
+
+/// Puts other decisions in the place of those on subjects of that kind.
+void replace_entries(Subject::Kind kind, std::span<const PlanEntry> entries,
+                     std::vector<PlanEntry>& plan);
 
 }  // namespace opaline::bake

@@ -13,10 +13,11 @@ const EffectDescriptor& EffectTable::operator[](Effect id) const {
 }
 
 bool takes_even_media(const EffectTable& effects, const Knobs& knobs) {
-    return std::any_of(
-        effects.effects.begin(), effects.effects.end(), [&](const EffectDescriptor& effect) {
-            return effect.takes_even_media != nullptr && effect.takes_even_media(knobs);
+    return std::ranges::any_of(effects.effects, [&](const EffectDescriptor& effect) {
+        return std::ranges::any_of(effect.knobs, [&](const KnobSpec* knob) {
+            return knob->even_media > 0 && knobs[*knob] == knob->even_media;
         });
+    });
 }
 
 const DecisionRule& rule_of(const EffectTable& effects, const PlanEntry& entry) {
@@ -27,7 +28,9 @@ const DecisionRule& rule_of(const EffectTable& effects, const PlanEntry& entry) 
 
 bool acts_on(const EffectDescriptor& effect, std::span<const PlanEntry> decisions,
              const RowLayout& layout) {
-    if (effect.acts != nullptr) return effect.acts(layout);
+    if (!effect.rules.empty() && effect.rules.front().name != effect.name) {
+        return effect.gather.applies != nullptr && effect.gather.applies(layout);
+    }
     return std::any_of(decisions.begin(), decisions.end(), [&](const PlanEntry& entry) {
         return entry.effect == effect.id && entry.rule == 0 && entry.on;
     });

@@ -29,6 +29,8 @@ struct Prepared {
 };
 using PreparedPtr = std::unique_ptr<Prepared>;
 
+struct EffectInputs;
+
 /// One decision of an effect: the effect as a whole, or a part that is decided by itself.
 struct DecisionRule {
     std::string_view name;  ///< that of the effect, or effect.part
@@ -37,6 +39,13 @@ struct DecisionRule {
     PlanEntry (*decide)(const PlanInput& input);
     /// What the decision means to the subject's rows.
     void (*lay_out)(const PlanEntry& entry, RowLayout& layout);
+    /// Completes the decision once the effect has studied the subject; rules after it follow.
+    void (*amend)(const EffectInputs& inputs, PlanEntry& entry) = nullptr;
+    /// Warnings where knobs contradict the decision.
+    void (*warn)(const PlanInput& input, const PlanEntry& entry,
+                 std::vector<formats::Diagnostic>& warnings) = nullptr;
+    /// On: light of the reference that the file holds, beside the light of all files.
+    formats::TermSet held = formats::TermSet::none;
 };
 
 /// How far an effect has come with one subject; null where a step did not run.
@@ -68,6 +77,10 @@ struct PreparationStep {
     bool (*applies)(const formats::Material& material, const RowLayout& layout) = nullptr;
     PreparedPtr (*run)(const EffectInputs& inputs, std::uint64_t& rays) = nullptr;
     Work (*work)(const SubjectCost& cost) = nullptr;
+    /// Memory of its result for one subject, at most [bytes].
+    double (*bytes)(const Knobs& knobs) = nullptr;
+    /// Sets the knobs of a finer result, for the pilot's rounds; false: there is none.
+    bool (*refine)(Knobs& knobs) = nullptr;
 };
 
 /// How an effect adds to dense rows. `add` null: it fills none.
@@ -83,6 +96,8 @@ struct GatherStep {
                          const DenseRow& row) = nullptr;
     /// Of all rows of `cost.receivers` receivers.
     Work (*work)(const SubjectCost& cost) = nullptr;
+    /// Rows of a receiver of a medium, before anything is planned; null: one.
+    double (*typical_rows)(const formats::Medium& medium, const Knobs& knobs) = nullptr;
 };
 
 /// Effort of a truth at a receiver.
@@ -142,14 +157,13 @@ struct EffectDescriptor {
     Effect id{};
     std::string_view name{};  ///< for --effects and reports; that of its folder
     std::string_view help{};  ///< the light that it simulates, in a line; empty: not for --effects
-    bool inside_media = false;              ///< it needs the inside of a medium
-    std::span<const DecisionRule> rules{};  ///< the first one decides the effect itself
-    /// Whether it acts on a subject, where its first rule does not decide that.
-    bool (*acts)(const RowLayout& layout) = nullptr;
+    Subject::Kind kind = Subject::Kind::material;  ///< what it is about
+    bool inside_media = false;                     ///< it needs the inside of a medium
+    /// Of materials. The first one decides the effect itself, if it has its name; the effect acts
+    /// where `gather` applies otherwise.
+    std::span<const DecisionRule> rules{};
     std::span<const KnobSpec* const> knobs{};
     std::span<const PilotLadder> pilot{};
-    /// The knobs of its samples, refined together by the pilot's rounds; null: it has none.
-    bool (*refine_samples)(Knobs& knobs) = nullptr;
 
     PreparationStep study{};    ///< depends on no knob
     PreparationStep samples{};  ///< independent of the pilot's knobs of rows
@@ -163,16 +177,6 @@ struct EffectDescriptor {
     bool reads_openness = false;
     /// It adds BakeInputs::light to its rows. Where that replaces the environment, no other acts.
     bool adds_other_light = false;
-    bool concerns_volumes = false;   ///< it is about volumes instead of materials
-    bool concerns_layers = false;    ///< it is about cloud layers instead of materials
-    bool concerns_emitters = false;  ///< it is about light that the scene itself sends out
-    /// Light of the reference that files with it hold, beside the light of all files.
-    formats::TermSet held_light = formats::TermSet::none;
-
-    /// Memory: of the samples of one subject at most [bytes]; rows of a receiver of a medium.
-    double (*sample_bytes)(const Knobs& knobs) = nullptr;
-    double (*typical_rows)(const formats::Medium& medium, const Knobs& knobs) = nullptr;
-
     /// This effect's part of the answer where light leaves at its entry (RowLayout::at_entry): adds
     /// to f(c), radiance per irradiance at kCosineSteps + 1 evenly spaced cosines from 0 to 1, band
     /// by band.
@@ -183,15 +187,9 @@ struct EffectDescriptor {
     std::vector<CrossingViews> (*look_through)(const EffectInputs& inputs,
                                                std::span<const BodyPoint> points,
                                                std::uint64_t& rays) = nullptr;
-    /// Colour that replaces the base colour's own, of a medium shown as a surface.
+    /// RowLayout::tint of a medium that it shows as a surface.
     formats::Rgb (*tint)(const Prepared& study) = nullptr;
-    /// Whether it takes media for homogeneous, as these knobs ask for. Null: never.
-    bool (*takes_even_media)(const Knobs& knobs) = nullptr;
-    /// Completes one of its decisions once it has studied the subject; rules after it follow.
-    void (*amend)(const EffectInputs& inputs, PlanEntry& entry) = nullptr;
-    /// Warnings about decisions that knobs contradict, and about light that the model leaves out.
-    void (*warn_of_plan)(const PlanInput& input, const PlanEntry& entry,
-                         std::vector<formats::Diagnostic>& warnings) = nullptr;
+    /// Warnings about light that the model leaves out.
     void (*warn_of_model)(const EffectInputs& inputs,
                           std::vector<formats::Diagnostic>& warnings) = nullptr;
 };
@@ -205,7 +203,7 @@ struct EffectTable {
     const EffectDescriptor& operator[](Effect id) const;
 };
 
-/// Whether some effect takes media for homogeneous (EffectDescriptor::takes_even_media).
+/// Whether some effect takes media for homogeneous (KnobSpec::even_media).
 bool takes_even_media(const EffectTable& effects, const Knobs& knobs);
 
 const DecisionRule& rule_of(const EffectTable& effects, const PlanEntry& entry);

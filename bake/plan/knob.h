@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 
@@ -19,6 +22,25 @@ struct KnobTheory {
     bool fine_is_small = false;
 };
 
+/// At most eight numbers, written in place.
+class Numbers {
+  public:
+    constexpr Numbers() = default;
+    constexpr Numbers(std::initializer_list<double> list) : size_(list.size()) {
+        std::copy(list.begin(), list.end(), value_.begin());
+    }
+
+    constexpr const double* begin() const { return value_.data(); }
+    constexpr const double* end() const { return begin() + size_; }
+    constexpr std::size_t size() const { return size_; }
+    constexpr bool empty() const { return size_ == 0; }
+    constexpr double operator[](std::size_t i) const { return value_[i]; }
+
+  private:
+    std::array<double, 8> value_{};
+    std::size_t size_ = 0;
+};
+
 /// A setting that trades accuracy of one effect for time or bytes. Each stands once, as a constant
 /// of its effect's folder; its address identifies it.
 struct KnobSpec {
@@ -33,7 +55,8 @@ struct KnobSpec {
     bool exact_if_given = false;     ///< otherwise an upper limit
     /// Not empty: it is a choice; its values are places in this list, and people read the words.
     std::span<const std::string_view> words{};
-    std::span<const double> allowed{};  ///< not empty: the only values, besides 0 for `auto`
+    Numbers allowed{};      ///< not empty: the only values, besides 0 for `auto`
+    double even_media = 0;  ///< the value for which media are homogeneous; 0: there is none
 
     /// Values of the presets draft, preview, production, reference: each at least as accurate as
     /// the one before.
@@ -44,11 +67,11 @@ struct KnobSpec {
     double (*for_target)(double error) = nullptr;
 
     // The sweep (accuracy/sweep).
-    std::string_view label{};          ///< of a point, with %g for the value
-    std::span<const double> ladder{};  ///< values to try one by one
+    std::string_view label{};  ///< of a point, with %g for the value
+    Numbers ladder{};          ///< values to try one by one
     /// Values where all knobs change together, -2 to 2 steps from the middle; and of the settings
     /// that serve as truth, finest first. Empty: as in the base.
-    std::span<const double> diagonal{}, truths{};
+    Numbers diagonal{}, truths{};
 
     KnobTheory theory{};
 

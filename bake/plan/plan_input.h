@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "bake/plan/bake_plan.h"
@@ -11,21 +13,32 @@ namespace opaline::bake {
 
 /// Decisions may leave out less radiance than this under `white`.
 inline constexpr double kLeastBound = 1.0 / 512;
+/// The same, or with Knobs::error_target a share of it such that all decisions on a subject
+/// together leave out at most a quarter.
+double least_bound(const Knobs& knobs, std::size_t decisions);
 
 /// What a rule decides from.
 struct PlanInput {
     const formats::Material& material;
     const MaterialFacts& subject;
     const Knobs& knobs;
-    /// Radiance below which a row of the plan is left out: kLeastBound, or with Knobs::error_target
-    /// a share of it such that all rows of the subject together take at most a quarter.
-    double least_bound = kLeastBound;
+    double least_bound = kLeastBound;      ///< of as many decisions as concern the subject
     std::span<const PlanEntry> earlier{};  ///< decisions on this subject so far
 };
 
 /// Whether an effect of this bound is simulated. `forced`: its bound is too small, but
 /// Knobs::simulate_all asks for it. Effects of an unknown bound (NaN) are simulated.
 bool is_worth(double bound, const PlanInput& input, bool& forced);
+
+/// A decision on another subject than a material, one of as many `decisions`: on if its bound is
+/// not small, or if Knobs::simulate_all asks for it and it is above 0. Its reason is empty unless
+/// --effects leaves the effect out. `name`: that of an effect, or effect.part.
+PlanEntry decide_by_bound(std::string_view name, const Subject& subject, double bound,
+                          std::size_t decisions, const Knobs& knobs);
+/// Gives a decision its reason, unless it has one.
+void explain(PlanEntry& entry, const std::string& on, const std::string& off);
+/// Adds to its reason that it is on in spite of its bound, if it is.
+void tell_forced(PlanEntry& entry);
 
 /// True if the user named the effect; true if the user did not exclude it.
 bool is_named(const Knobs& knobs, std::string_view effect);

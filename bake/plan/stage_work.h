@@ -51,10 +51,14 @@ struct SubjectCost {
     const MaterialFacts& facts;
     const RowLayout& layout;
     double receivers = 0;  ///< that the work is for
-    bool traces_rays =
-        true;  ///< the scene has a ray hierarchy: truths trace even where rows do not
+    /// The scene has a ray hierarchy: truths trace even where rows do not.
+    bool traces_rays = true;
 
     const formats::Medium& medium() const { return *material.medium; }
+    /// The same at other knobs, with other rows.
+    SubjectCost with(const CostInput& other, const RowLayout& rows) const {
+        return {other, material, facts, rows, receivers, traces_rays};
+    }
 };
 
 /// Memory for effects that gather many receivers together.

@@ -16,6 +16,15 @@ PreparedPtr& result_of(EffectState& state, Step step) {
                                    : state.prepared;
 }
 
+void take_tints(const EffectTable& effects, SubjectState& subject) {
+    for (std::size_t e = 0; e < subject.effects.size(); ++e) {
+        const auto tint = effects.effects[e].tint;
+        if (tint != nullptr && subject.effects[e].study != nullptr) {
+            subject.layout.tint = tint(*subject.effects[e].study);
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan,
@@ -45,7 +54,17 @@ void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, co
                 acts_on(effect, decisions, state.layout) &&
                 (has_environment(bake.light) || effect.adds_other_light || helps);
         }
+        take_tints(bake.effects, state);
     }
+}
+
+std::vector<RowLayout> layouts_of(const formats::Scene& scene,
+                                  std::span<const SubjectState> subjects) {
+    std::vector<RowLayout> layouts(scene.materials.size());
+    for (const SubjectState& subject : subjects) {
+        layouts[subject.material] = subject.layout;
+    }
+    return layouts;
 }
 
 const SubjectState& state_of(std::span<const SubjectState> subjects, std::uint32_t material) {
@@ -67,11 +86,10 @@ const PreparationStep& step_of(const EffectDescriptor& effect, Step step) {
                                    : effect.prepare;
 }
 
-bool is_taken(const EffectDescriptor& effect, const EffectState& state, Step step,
-              const formats::Material& material, const RowLayout& layout) {
+bool is_taken(const EffectDescriptor& effect, Step step, const formats::Material& material,
+              const RowLayout& layout) {
     const PreparationStep& own = step_of(effect, step);
-    return state.acts && own.run != nullptr &&
-           (own.applies == nullptr || own.applies(material, layout));
+    return own.run != nullptr && (own.applies == nullptr || own.applies(material, layout));
 }
 
 void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Context& context,
@@ -82,8 +100,9 @@ void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Conte
         std::vector<SubjectState*> concerned;
         for (SubjectState& subject : subjects) {
             const bool is_done = step == Step::study && subject.effects[e].study != nullptr;
-            if (!is_done && is_taken(effects[e], subject.effects[e], step,
-                                     bake.scene.materials[subject.material], subject.layout)) {
+            if (!is_done && subject.effects[e].acts &&
+                is_taken(effects[e], step, bake.scene.materials[subject.material],
+                         subject.layout)) {
                 concerned.push_back(&subject);
             }
         }
@@ -93,6 +112,7 @@ void run_step(Step step, const BakeInputs& bake, const Knobs& knobs, const Conte
         const auto run = [&](SubjectState& subject, std::uint64_t& rays) {
             result_of(subject.effects[e], step) =
                 own.run(inputs_of(bake, subject, e, knobs, context), rays);
+            if (step == Step::study) take_tints(bake.effects, subject);
             return 0;
         };
         const auto run_all = [&](std::uint64_t& rays) {

@@ -12,7 +12,7 @@ namespace opaline::bake {
 /// One subject of a bake in progress.
 struct SubjectState {
     std::uint32_t material = 0;
-    RowLayout layout;
+    RowLayout layout;                  ///< with the tint that studies found
     std::vector<EffectState> effects;  ///< in the order of the table
 };
 
@@ -24,6 +24,10 @@ std::vector<SubjectState> begin_subjects(const BakeInputs& bake, std::span<const
 void settle_subjects(const BakeInputs& bake, std::span<const PlanEntry> plan, const Knobs& knobs,
                      std::vector<SubjectState>& subjects);
 
+/// By material; of those without receivers as RowLayout begins.
+std::vector<RowLayout> layouts_of(const formats::Scene& scene,
+                                  std::span<const SubjectState> subjects);
+
 /// The state of a material. Precondition: it has receivers.
 const SubjectState& state_of(std::span<const SubjectState> subjects, std::uint32_t material);
 
@@ -33,9 +37,9 @@ EffectInputs inputs_of(const BakeInputs& bake, const SubjectState& subject, std:
 /// Steps that run once for each effect of each subject, in this order.
 enum class Step { study, samples, prepare };
 const PreparationStep& step_of(const EffectDescriptor& effect, Step step);
-/// Whether a subject goes through the step of an effect.
-bool is_taken(const EffectDescriptor& effect, const EffectState& state, Step step,
-              const formats::Material& material, const RowLayout& layout);
+/// Whether a subject goes through the step of an effect that acts on it.
+bool is_taken(const EffectDescriptor& effect, Step step, const formats::Material& material,
+              const RowLayout& layout);
 
 /// Runs one step for all subjects and notes its stages; a study once: what a pilot changes
 /// later does not undo its choices.

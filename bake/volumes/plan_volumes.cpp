@@ -22,11 +22,8 @@
 namespace opaline::bake {
 namespace {
 
-// Radiance below which an effect is left out: three decisions of a volume share a quarter of the
-// error.
-double least_bound(const Knobs& knobs) {
-    return knobs.error_target > 0 ? std::min(kLeastBound, knobs.error_target / 12) : kLeastBound;
-}
+// On a volume: they share what may be left out.
+constexpr std::size_t kDecisions = 3;
 
 // Light that was scattered before reaches a node nearly evenly from all around, except at the
 // volume's edge: degree l of the newly scattered light is at most lambda_l of it.
@@ -72,24 +69,7 @@ std::uint32_t spacing_of(const formats::Volume& volume, const DensityVolume& own
 }
 
 PlanEntry decide(std::string_view name, const Subject& subject, double bound, const Knobs& knobs) {
-    PlanEntry entry;
-    entry.name = name;
-    entry.subject = subject;
-    entry.bound = bound;
-    if (!is_wanted(knobs, name)) {
-        entry.reason = "left out by --effects";
-        return entry;
-    }
-    entry.on = bound >= least_bound(knobs);
-    if (!entry.on && knobs.simulate_all && bound > 0) {
-        entry.on = entry.forced = true;
-    }
-    return entry;
-}
-
-// Why it is on or off, unless that is told already.
-void explain(PlanEntry& entry, const std::string& on, const std::string& off) {
-    if (entry.reason.empty()) entry.reason = entry.on ? on : off;
+    return decide_by_bound(name, subject, bound, kDecisions, knobs);
 }
 
 // What is known of a volume whose density is the same in places; "" where it is nowhere.
@@ -168,15 +148,10 @@ void lay_out_often(const PlanEntry& often, const PlanEntry& seen, const ScaledPh
 void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, const Knobs& knobs,
                          VolumeLayout& layout) {
     const double bound = scattered_glow(glow, once);
-    if (bound >= least_bound(knobs) || (knobs.simulate_all && bound > 0)) {
+    if (bound >= least_bound(knobs, kDecisions) || (knobs.simulate_all && bound > 0)) {
         layout.glow_terms = phase.harmonics();
         layout.glow_walks = choose_walks(phase, layout.glow_terms, knobs);
     }
-}
-
-bool has_effect(std::span<const PlanEntry> plan, std::string_view name) {
-    return std::ranges::any_of(
-        plan, [&](const PlanEntry& entry) { return entry.on && entry.name == name; });
 }
 
 std::string why_dark(const VolumeBrightness& most) {
@@ -205,11 +180,11 @@ bool is_seen_to_glow(const formats::Volume& volume, const Knobs& knobs) {
 }
 
 bool lights_surfaces(std::span<const PlanEntry> plan) {
-    return has_effect(plan, kVolumesToSurfaces);
+    return is_on(plan, kVolumesToSurfaces);
 }
 
 bool sees_surfaces(std::span<const PlanEntry> plan) {
-    return has_effect(plan, kSurfacesToVolumes);
+    return is_on(plan, kSurfacesToVolumes);
 }
 
 const char* scattering_stage(std::span<const VolumeLayout> layouts) {
@@ -279,7 +254,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     }
     plan_methods(scene, knobs, plan.layouts, plan.entries);
     for (PlanEntry& entry : plan.entries) {
-        entry.reason += entry.forced ? "; forced: by its bound it would be left out" : "";
+        tell_forced(entry);
     }
     return plan;
 }

@@ -13,21 +13,14 @@ namespace opaline::bake {
 
 namespace volume_knobs {
 inline bool is_lit(const RowLayout&, std::span<const PlanEntry> decisions) {
-    return std::ranges::any_of(decisions, [](const PlanEntry& entry) {
-        return entry.on && entry.subject.kind == Subject::Kind::volume;
-    });
+    return is_on(decisions, Subject::Kind::volume);
 }
 inline bool is_scattered_often(const RowLayout&, std::span<const PlanEntry> decisions) {
-    return std::ranges::any_of(decisions, [](const PlanEntry& entry) {
-        return entry.on && entry.name == kOftenInVolumes;
-    });
+    return is_on(decisions, kOftenInVolumes);
 }
 // Light of surfaces has rows and walks of its own.
-inline bool sees_surface(const PlanEntry& entry) {
-    return entry.on && entry.name == kSurfacesToVolumes;
-}
-inline bool has_rows_by_view(const RowLayout& layout, std::span<const PlanEntry> decisions) {
-    return is_scattered_often(layout, decisions) || std::ranges::any_of(decisions, sees_surface);
+inline bool has_rows_by_view(const RowLayout&, std::span<const PlanEntry> decisions) {
+    return is_on(decisions, kOftenInVolumes) || is_on(decisions, kSurfacesToVolumes);
 }
 // Whether a volume's light that is scattered more than once takes that way, or may.
 inline bool goes_by(std::span<const PlanEntry> decisions, VolumeMethod method) {
@@ -37,24 +30,11 @@ inline bool goes_by(std::span<const PlanEntry> decisions, VolumeMethod method) {
     });
 }
 inline bool is_walked(const RowLayout&, std::span<const PlanEntry> decisions) {
-    return goes_by(decisions, VolumeMethod::walks) || std::ranges::any_of(decisions, sees_surface);
+    return goes_by(decisions, VolumeMethod::walks) || is_on(decisions, kSurfacesToVolumes);
 }
 inline bool follows_paths(const RowLayout&, std::span<const PlanEntry> decisions) {
     return goes_by(decisions, VolumeMethod::path_integration);
 }
-inline constexpr std::array<double, 4> kSpacings{1, 2, 4, 8};
-inline constexpr std::array<double, 5> kTermCounts{1, 4, 9, 16, 25};
-// Of the sweep.
-inline constexpr std::array<double, 6> kSpacingTruths{1, 1, 1, 2, 2, 2};
-inline constexpr std::array<double, 6> kCoefficientLadder{136, 272, 544, 1088, 2176, 4352};
-inline constexpr std::array<double, 5> kCoefficientDiagonal{272, 544, 816, 1088, 1632};
-inline constexpr std::array<double, 6> kCoefficientTruths{4352, 4352, 2176, 2176, 1632, 1632};
-inline constexpr std::array<double, 5> kWalkLadder{4, 16, 64, 256, 1024};
-inline constexpr std::array<double, 5> kWalkDiagonal{16, 32, 64, 128, 256};
-inline constexpr std::array<double, 6> kWalkTruths{1024, 512, 512, 256, 256, 128};
-inline constexpr std::array<double, 6> kPathLadder{8, 16, 32, 64, 128, 256};
-inline constexpr std::array<double, 5> kPathDiagonal{8, 16, 32, 64, 128};
-inline constexpr std::array<double, 6> kPathTruths{256, 256, 256, 128, 128, 64};
 // Degree l of 1, 4, 9, ... rows.
 inline double degree_of(double rows) {
     return std::sqrt(rows) - 1;
@@ -72,11 +52,11 @@ inline constexpr KnobSpec kVolumeSpacing{
     .lowest = 1,
     .highest = 8,
     .zero_is_auto = true,
-    .allowed = volume_knobs::kSpacings,
+    .allowed = {1, 2, 4, 8},
     .preset = {0, 0, 0, 0},
     .label = "nodes every %g voxels",
-    .ladder = volume_knobs::kSpacings,
-    .truths = volume_knobs::kSpacingTruths,
+    .ladder = {1, 2, 4, 8},
+    .truths = {1, 1, 1, 2, 2, 2},
     .theory = {.label = "voxels between nodes",
                .words = "square of the spacing, where light is smooth between nodes",
                .rate = 2,
@@ -97,9 +77,9 @@ inline constexpr KnobSpec kVolumeCoefficients{
     .highest = 39936,
     .preset = {272, 544, 1632, 39936},
     .label = "%g coefficients a point of volumes",
-    .ladder = volume_knobs::kCoefficientLadder,
-    .diagonal = volume_knobs::kCoefficientDiagonal,
-    .truths = volume_knobs::kCoefficientTruths,
+    .ladder = {136, 272, 544, 1088, 2176, 4352},
+    .diagonal = {272, 544, 816, 1088, 1632},
+    .truths = {4352, 4352, 2176, 2176, 1632, 1632},
     .theory = {.label = "coefficients of a point of volumes",
                .words = "edge of a texel, where light is a smooth function of its direction",
                .rate = -0.5},
@@ -134,9 +114,9 @@ inline constexpr KnobSpec kVolumePaths{
     .highest = 4096,
     .preset = {16, 32, 64, 256},
     .label = "%g directions of paths from a node",
-    .ladder = volume_knobs::kPathLadder,
-    .diagonal = volume_knobs::kPathDiagonal,
-    .truths = volume_knobs::kPathTruths,
+    .ladder = {8, 16, 32, 64, 128, 256},
+    .diagonal = {8, 16, 32, 64, 128},
+    .truths = {256, 256, 256, 128, 128, 64},
     .theory = {.label = "directions of paths from a node",
                .words = "views as even points on a sphere, of light with edges [Beck1984]; the "
                         "error of paths themselves stays",
@@ -156,9 +136,9 @@ inline constexpr KnobSpec kVolumeWalks{
     .highest = 65536,
     .preset = {32, 128, 256, 1024},
     .label = "%g walks from a node",
-    .ladder = volume_knobs::kWalkLadder,
-    .diagonal = volume_knobs::kWalkDiagonal,
-    .truths = volume_knobs::kWalkTruths,
+    .ladder = {4, 16, 64, 256, 1024},
+    .diagonal = {16, 32, 64, 128, 256},
+    .truths = {1024, 512, 512, 256, 256, 128},
     .theory = {.label = "walks from a node", .words = "noise of independent walks", .rate = -0.5},
     .matters = volume_knobs::is_walked};
 
@@ -173,10 +153,10 @@ inline constexpr KnobSpec kVolumeTerms{
     .lowest = 1,
     .highest = 25,
     .zero_is_auto = true,
-    .allowed = volume_knobs::kTermCounts,
+    .allowed = {1, 4, 9, 16, 25},
     .preset = {0, 0, 0, 0},
     .label = "%g rows of multiple scattering",
-    .ladder = volume_knobs::kTermCounts,
+    .ladder = {1, 4, 9, 16, 25},
     .theory = {.label = "degree of the rows of multiple scattering",
                .words = "moments of Henyey and Greenstein's phase function without its peak",
                .rate_by_cosine = rate_of_degree,

@@ -137,8 +137,8 @@ TEST(CloudBake, LayerThatIsNotSeenLeavesItsGround) {
         const bake::BakeResult forced = bake_scene(scene, options);
         EXPECT_GT(forced.asset.clouds.records[0].highest, 0);
         const std::vector<Rgb> truth = look_around(forced.asset);
-        const double bound = left_out.volume_plan[0].bound;
-        EXPECT_EQ(left_out.volume_plan[0].name, "cloud");
+        const double bound = left_out.plan[0].bound;
+        EXPECT_EQ(left_out.plan[0].name, "cloud");
         for (std::size_t i = 0; i < seen.size(); ++i) {
             EXPECT_NEAR(seen[i].r, truth[i].r, bound) << i;
             EXPECT_NEAR(seen[i].b, truth[i].b, bound) << i;
@@ -197,21 +197,21 @@ TEST(CloudBake, CostsArePredictedForItsEntriesInBothFidelities) {
     for (const bool is_paper : {false, true}) {
         scene.layers[0].paper = is_paper;
         const bake::BakeResult result = bake_scene(scene, layer_bake());
-        std::vector<bake::PlanEntry> plan = result.plan, layers = result.volume_plan;
+        std::vector<bake::PlanEntry> plan = result.plan;
         const bake::StageRates rates{};
         const bake::CostPrediction cost = bake::predict_costs(
-            {bake::all_effects(), scene, result.facts, result.knobs, rates, 1}, plan, layers);
+            {bake::all_effects(), scene, result.facts, result.knobs, rates, 1}, plan);
         for (const bake::StageReport& stage : result.stages) {
             if (stage.name.ends_with("of clouds")) {
                 EXPECT_EQ(std::ranges::count(cost.stages, stage.name, &bake::StageCost::name), 1)
                     << stage.name;
             }
         }
-        EXPECT_GT(layers[0].predicted_seconds, 0);
-        EXPECT_GT(layers[1].predicted_seconds, 0);
+        EXPECT_GT(plan[0].predicted_seconds, 0);
+        EXPECT_GT(plan[1].predicted_seconds, 0);
         const auto bytes = static_cast<double>(4 * result.asset.clouds.value.size());
-        EXPECT_NEAR(static_cast<double>(layers[0].predicted_bytes + layers[1].predicted_bytes),
-                    bytes, 0.01 * bytes);
+        EXPECT_NEAR(static_cast<double>(plan[0].predicted_bytes + plan[1].predicted_bytes), bytes,
+                    0.01 * bytes);
     }
 }
 

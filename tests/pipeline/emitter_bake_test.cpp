@@ -87,7 +87,7 @@ TEST(EmitterBake, FileOfASceneWithoutLampsIsAsItWas) {
     const BakeResult lit = bake_lamps(lamp_scene());
     EXPECT_EQ(lit.asset.transport.code8, dark.asset.transport.code8);
     EXPECT_EQ(lit.asset.transport.average_code, dark.asset.transport.average_code);
-    EXPECT_FALSE(std::ranges::any_of(dark.volume_plan, [](const PlanEntry& entry) {
+    EXPECT_FALSE(std::ranges::any_of(dark.plan, [](const PlanEntry& entry) {
         return entry.subject.kind == Subject::Kind::emitter;
     }));
 }

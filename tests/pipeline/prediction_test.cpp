@@ -88,10 +88,10 @@ TEST(Prediction, SecondsAndBytesOfVolumesBelongToTheirDecisions) {
     scene.volumes.push_back(make_volume(make_blob(0.5, 0.25), 4, 0.9f, 0.5f));
     const bake::Knobs knobs = *bake::resolve_knobs(small_bake());
     const bake::SceneFacts facts = bake::inspect_scene(scene);
-    std::vector<bake::PlanEntry> plan, volumes = bake::plan_volumes(scene, knobs).entries;
+    std::vector<bake::PlanEntry> volumes = bake::plan_volumes(scene, knobs).entries;
     const bake::StageRates rates{};
     const bake::CostPrediction cost =
-        bake::predict_costs({bake::all_effects(), scene, facts, knobs, rates, 2}, plan, volumes);
+        bake::predict_costs({bake::all_effects(), scene, facts, knobs, rates, 2}, volumes);
     double seconds = cost.shared_seconds;
     std::uint64_t bytes = cost.shared_bytes;
     for (const bake::PlanEntry& entry : volumes) {

@@ -118,10 +118,9 @@ TEST(SeenSurfaces, SmokeShowsNoMoreThanTheBoundAndAGoodPartOfIt) {
         bake::BakeOptions options = seen_bake();
         options.effects = {"direct", "surface-volume"};
         const bake::BakeResult result = bake_scene(scene, options);
-        const auto entry = std::ranges::find_if(result.volume_plan, [](const bake::PlanEntry& e) {
-            return e.name == "surface-volume";
-        });
-        ASSERT_NE(entry, result.volume_plan.end());
+        const auto entry = std::ranges::find_if(
+            result.plan, [](const bake::PlanEntry& e) { return e.name == "surface-volume"; });
+        ASSERT_NE(entry, result.plan.end());
         EXPECT_TRUE(entry->on);
         const double seen = look(result, {-1.2f, 0, 0}, {1, 0, 0}).radiance.g;
         EXPECT_LE(seen, entry->bound);

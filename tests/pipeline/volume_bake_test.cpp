@@ -128,7 +128,7 @@ TEST(VolumeBake, PartsLookLikeTheWholeAlsoWhereTheyMeet) {
         nodes += part.node_count;
     }
     EXPECT_LT(nodes, one[0].node_count / 2);
-    EXPECT_EQ(parted.volume_plan.size(), whole.volume_plan.size());
+    EXPECT_EQ(parted.plan.size(), whole.plan.size());
     const std::vector<float> a = see_lines(parted), b = see_lines(whole);
     for (std::size_t i = 0; i < a.size(); ++i) {
         EXPECT_NEAR(a[i], b[i], i % 2 == 1 ? 1e-3f : 0.06f * b[i]) << i;
@@ -181,7 +181,7 @@ TEST(VolumeBake, MethodThatWasAskedForIsTakenAndStated) {
     EXPECT_EQ(json.at("knobs").at("volume_method"), "path-integration");
     EXPECT_THAT(json.at("plan").at(1).at("reason").get<std::string>(),
                 HasSubstr("path integration, as --volume-method says"));
-    EXPECT_THAT(walks.volume_plan.at(1).reason, HasSubstr("random walks"));
+    EXPECT_THAT(walks.plan.at(1).reason, HasSubstr("random walks"));
 }
 
 }  // namespace

@@ -43,7 +43,8 @@ PilotRows::PilotRows(const PilotScene& pilot, std::span<const PilotReceiver> rec
 bool PilotRows::prepare_subject(SubjectRows& rows, std::size_t effect) {
     const EffectDescriptor& own = pilot_.bake.effects.effects[effect];
     EffectState& state = rows.subject->effects[effect];
-    if (!is_taken(own, state, Step::prepare, pilot_.bake.scene.materials[rows.subject->material],
+    if (!state.acts ||
+        !is_taken(own, Step::prepare, pilot_.bake.scene.materials[rows.subject->material],
                   rows.subject->layout)) {
         return false;
     }

@@ -14,7 +14,7 @@ std::optional<Knobs> refine_samples(const EffectTable& effects, const Refinement
     if (!refinement.more_samples_help || !refinement.base->has_samples) return std::nullopt;
     bool is_finer = false;
     for (const EffectDescriptor& effect : effects.effects) {
-        is_finer = (effect.refine_samples != nullptr && effect.refine_samples(knobs)) || is_finer;
+        is_finer = (effect.samples.refine != nullptr && effect.samples.refine(knobs)) || is_finer;
     }
     return is_finer ? std::optional(std::move(knobs)) : std::nullopt;
 }

@@ -206,14 +206,15 @@ std::vector<PlanEntry> choose_word(std::span<const PlanEntry> plan, std::string_
 }
 
 // Knobs of volumes that have no use but by another choice.
-void add_chosen_knobs(const EffectTable& effects, std::span<const PlanEntry> volume_plan,
+void add_chosen_knobs(const EffectTable& effects, std::span<const PlanEntry> plan,
                       SweepSubject& subject) {
     for (const KnobSpec* choice : subject.knobs) {
         for (std::size_t word = 1; word < choice->words.size(); ++word) {
-            const std::vector<PlanEntry> plan = choose_word(volume_plan, choice->words[word]);
+            const std::vector<PlanEntry> other = choose_word(plan, choice->words[word]);
             for (const EffectDescriptor& effect : effects.effects) {
                 for (const KnobSpec* knob : effect.knobs) {
-                    if (effect.concerns_volumes && !subject.has(*knob) && knob->matters({}, plan)) {
+                    if (effect.kind == Subject::Kind::volume && !subject.has(*knob) &&
+                        knob->matters({}, other)) {
                         subject.chosen.push_back({choice, word, knob});
                     }
                 }
@@ -229,21 +230,21 @@ bool SweepSubject::has(const KnobSpec& knob) const {
 }
 
 SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
-                           std::span<const PlanEntry> plan, const Knobs& knobs,
-                           std::span<const PlanEntry> volume_plan) {
+                           std::span<const PlanEntry> plan, const Knobs& knobs) {
     SweepSubject subject;
     subject.has_surfaces = !scene.primitives.empty();
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (!(effect.concerns_volumes || effect.concerns_layers) ||
-                !knob->matters({}, volume_plan)) {
+            if ((effect.kind != Subject::Kind::volume && effect.kind != Subject::Kind::layer) ||
+                !knob->matters({}, plan)) {
                 continue;
             }
-            (effect.concerns_volumes ? subject.has_volumes : subject.has_layers) = true;
+            (effect.kind == Subject::Kind::volume ? subject.has_volumes : subject.has_layers) =
+                true;
             subject.knobs.push_back(knob);
         }
     }
-    add_chosen_knobs(effects, volume_plan, subject);
+    add_chosen_knobs(effects, plan, subject);
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         const auto decisions = entries_of(plan, m);
         if (decisions.empty()) continue;

@@ -81,10 +81,8 @@ struct SweepSubject {
     /// Nothing but cloud layers: knobs of rows do not matter.
     bool is_layer_alone() const { return has_layers && !has_surfaces && !has_volumes; }
 };
-/// `volume_plan`: of the scene's volumes and layers.
 SweepSubject sweep_subject(const EffectTable& effects, const formats::Scene& scene,
-                           std::span<const PlanEntry> plan, const Knobs& knobs,
-                           std::span<const PlanEntry> volume_plan = {});
+                           std::span<const PlanEntry> plan, const Knobs& knobs);
 
 /// True if both give the same transport; knobs of effects that are not simulated do not count.
 bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject);

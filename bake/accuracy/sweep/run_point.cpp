@@ -1,7 +1,6 @@
 #include "bake/accuracy/sweep/run_point.h"
 
 #include <malloc.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 
 #include "bake/accuracy/volumes/see_through.h"
 #include "bake/accuracy/volumes/volume_error.h"
+#include "bake/base/stage_log.h"
 #include "bake/layers/layer_tables.h"
 #include "formats/opal/write_opal.h"
 #include "runtime/clouds/layer_light.h"
@@ -31,16 +31,6 @@ namespace {
 void forget_peak_memory() {
     ::malloc_trim(0);
     std::ofstream("/proc/self/clear_refs") << "5";
-}
-
-// Of the whole process so far.
-double cpu_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    const auto seconds = [](const timeval& t) {
-        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-    };
-    return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 // What of the light above reaches meshes and volumes, as `opaline render` has it.

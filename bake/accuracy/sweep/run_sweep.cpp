@@ -14,12 +14,11 @@
 #include "bake/accuracy/sweep/run_point.h"
 #include "bake/accuracy/sweep/time_limit.h"
 #include "bake/accuracy/sweep/trace_truths.h"
+#include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
-#include "bake/emitters/plan_emitters.h"
 #include "bake/environment/builtin_environment.h"
-#include "bake/layers/plan_layers.h"
 #include "bake/pipeline/cost_model.h"
-#include "bake/scene/inspect_scene.h"
+#include "bake/pipeline/plan_scene.h"
 #include "bake/volumes/plan_volumes.h"
 #include "formats/media/mean_cosine.h"
 
@@ -34,17 +33,6 @@ formats::Error make_time_error(std::string fault) {
                                "give more seconds, or a smaller scene");
 }
 
-struct Prediction {
-    double seconds = 0, bytes = 0;
-};
-
-Prediction predict(const CostRequest& request) {
-    std::vector<PlanEntry> plan =
-        plan_bake(request.effects, request.scene, request.facts, request.knobs);
-    const CostPrediction cost = predict_costs(request, plan);
-    return {cost.seconds, static_cast<double>(cost.bytes)};
-}
-
 std::string amount(double value, const char* unit) {
     char text[48];
     std::snprintf(text, sizeof text, value < 10 ? "%.1f %s" : "%.0f %s", value, unit);
@@ -54,14 +42,6 @@ std::string amount(double value, const char* unit) {
 // There is something that path tracing and test lights are for: a layer alone has neither.
 bool has_receivers(const formats::Scene& scene) {
     return !scene.primitives.empty() || !scene.volumes.empty();
-}
-
-// Of volumes, then of layers, as BakeResult::volume_plan.
-std::vector<PlanEntry> plan_the_rest(const formats::Scene& scene, const Knobs& knobs) {
-    std::vector<PlanEntry> plan = plan_volumes(scene, knobs).entries;
-    std::ranges::copy(plan_layers(scene, knobs).entries, std::back_inserter(plan));
-    std::ranges::copy(plan_emitters(scene, knobs).entries, std::back_inserter(plan));
-    return plan;
 }
 
 // The state of a sweep in progress.
@@ -80,8 +60,10 @@ struct Sweep {
     std::size_t total = 1;
     double measured = 0, predicted = 0;  // of the points so far
 
-    Prediction predict_point(const Knobs& knobs) const {
-        return predict({effects, scene, facts, knobs, options.rates, context.threads});
+    CostPrediction predict_point(const Knobs& knobs) const {
+        std::vector<PlanEntry> plan = result.plan;
+        replace_entries(Subject::Kind::material, plan_bake(effects, scene, facts, knobs), plan);
+        return predict_costs({effects, scene, facts, knobs, options.rates, context.threads}, plan);
     }
     LadderRequest ladder_request() const {
         return {effects, result.subject, options.bake, list_choices(result.plan)};
@@ -97,9 +79,9 @@ struct Sweep {
     }
 
     // Why a point is skipped; empty: it is not.
-    std::string objection(const Prediction& cost, double seconds_left) const {
-        if (cost.bytes > options.most_bytes) {
-            return "the file would be " + amount(cost.bytes * 1e-9, "GB");
+    std::string objection(const CostPrediction& cost, double seconds_left) const {
+        if (const auto bytes = static_cast<double>(cost.bytes); bytes > options.most_bytes) {
+            return "the file would be " + amount(bytes * 1e-9, "GB");
         }
         const double seconds = cost.seconds * scale();
         if (seconds_left <= 0) return "no time was left for its " + amount(seconds, "s");
@@ -144,8 +126,9 @@ struct Sweep {
         return nullptr;
     }
 
-    void skip(const SweepPoint& point, const Prediction& cost, std::string reason) {
-        result.skipped.push_back({point, cost.seconds * scale(), cost.bytes, std::move(reason)});
+    void skip(const SweepPoint& point, const CostPrediction& cost, std::string reason) {
+        result.skipped.push_back(
+            {point, cost.seconds * scale(), static_cast<double>(cost.bytes), std::move(reason)});
     }
 
     // Bakes a point, or notes why not. A choice that an automatic one made as well is not baked
@@ -157,7 +140,7 @@ struct Sweep {
             --total;
             return formats::ok_status();
         }
-        const Prediction cost = predict_point(point.knobs);
+        const CostPrediction cost = predict_point(point.knobs);
         if (std::string reason = objection(cost, seconds_left); !reason.empty()) {
             skip(point, cost, std::move(reason));
             return formats::ok_status();
@@ -187,7 +170,7 @@ struct Sweep {
 // The finest candidate that half of the time that is left allows.
 std::optional<SweepPoint> choose_truth(const Sweep& sweep) {
     for (const SweepPoint& candidate : make_truths(sweep.ladder_request())) {
-        const Prediction cost = sweep.predict_point(candidate.knobs);
+        const CostPrediction cost = sweep.predict_point(candidate.knobs);
         if (sweep.objection(cost, 0.5 * sweep.left()).empty()) return candidate;
     }
     return std::nullopt;
@@ -223,10 +206,16 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     context.on_progress = {};  // steps are the progress
     auto picture_light = open_environment(options.light);
     if (!picture_light) return std::move(picture_light).error();
-    const SceneFacts facts = inspect_scene(scene);
+    BakeOptions base = options.bake;
+    base.quality = Quality::draft;
+    const auto draft = resolve_knobs(effects, base);
+    base.quality = Quality::preview;
+    const auto preview = resolve_knobs(effects, base);
+    if (!draft || !preview) return (draft ? preview : draft).error();
+    const ScenePlan planned = plan_scene(effects, scene, *preview);
     Sweep sweep{.effects = effects,
                 .scene = scene,
-                .facts = facts,
+                .facts = planned.facts,
                 .options = options,
                 .context = context,
                 .outer = outer,
@@ -238,6 +227,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     result.threads = context.threads;
     result.seed = options.bake.seed;
     result.picture_light = options.light;
+    result.plan = planned.entries;
     for (const formats::Primitive& p : scene.primitives) {
         result.receivers += p.position.size();
         result.triangles += p.index.size() / 3;
@@ -257,16 +247,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         if (!model) return std::move(model).error();
         sweep.view.model = std::move(*model);
     }
-
-    BakeOptions base = options.bake;
-    base.quality = Quality::draft;
-    const auto draft = resolve_knobs(effects, base);
-    base.quality = Quality::preview;
-    const auto preview = resolve_knobs(effects, base);
-    if (!draft || !preview) return (draft ? preview : draft).error();
-    result.plan = plan_bake(effects, scene, facts, *preview);
-    result.volume_plan = plan_the_rest(scene, *preview);
-    result.subject = sweep_subject(effects, scene, result.plan, *preview, result.volume_plan);
+    result.subject = sweep_subject(effects, scene, result.plan, *preview);
     if (result.subject.has_volumes) {
         auto volumes =
             make_sweep_volumes(scene, kShare * options.seconds, options.bake.seed, context);
@@ -288,8 +269,8 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
         auto found = trace_truths(scene, sweep.view.model,
                                   {.seed = options.bake.seed,
                                    .simulated = held_light(effects, result.plan),
-                                   .lit_by_volumes = lights_surfaces(result.volume_plan),
-                                   .volumes_see_surfaces = sees_surfaces(result.volume_plan)},
+                                   .lit_by_volumes = lights_surfaces(result.plan),
+                                   .volumes_see_surfaces = sees_surfaces(result.plan)},
                                   kShare * options.seconds, sweep.left(), context);
         if (!found) return std::move(found).error();
         truths = std::move(*found);
@@ -301,8 +282,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     }
     if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
         result.base = Quality::draft;
-        result.plan = plan_bake(effects, scene, facts, *draft);
-        result.volume_plan = plan_the_rest(scene, *draft);
+        result.plan = plan_scene(effects, scene, *draft).entries;
     }
     std::vector<SweepPoint> points = make_ladders(sweep.ladder_request(), result.base);
     result.points.front().point = points.front();  // with the rungs of a base, if it is one
@@ -318,10 +298,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
             return std::move(status).error();
         }
     }
-    if (outer.cancelled()) {
-        return formats::make_error(formats::ErrorKind::interrupted, "", "", "interrupted",
-                                   "nothing was written");
-    }
+    if (outer.cancelled()) return interrupted();
     scale_layer_radiance(result.points);
     const std::vector<std::string>& names = sweep.lights.begin()->second.probes.names;
     compare_with_finest(result, effects, scene, sweep.view.probes, names);

@@ -34,10 +34,9 @@ struct SweepResult {
     std::uint64_t seed = 0;
     double mean_cosine = 0;  ///< of the first medium's phase function
     SweepSubject subject;
-    Quality base = Quality::preview;     ///< preset of which the ladders change one knob
-    std::vector<PlanEntry> plan;         ///< of the base: of materials
-    std::vector<PlanEntry> volume_plan;  ///< and of volumes and layers
-    std::vector<PointRecord> points;     ///< in the order in which they were baked
+    Quality base = Quality::preview;  ///< preset of which the ladders change one knob
+    std::vector<PlanEntry> plan;      ///< of the base
+    std::vector<PointRecord> points;  ///< in the order in which they were baked
     /// index of the finest point of the choices that most points made (find_finest)
     std::size_t truth = 0;
     std::optional<ReferenceLadder> reference;  ///< nothing: no light, or no time

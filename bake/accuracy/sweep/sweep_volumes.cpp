@@ -1,7 +1,6 @@
 #include "bake/accuracy/sweep/sweep_volumes.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -30,12 +29,9 @@ formats::Result<SweepVolumes> make_sweep_volumes(const formats::Scene& scene, do
     constexpr std::uint64_t kFewEvents = 300000;
     constexpr double kMostTimes = 1000;
     const Clock::time_point start = Clock::now();
-    const auto elapsed = [&] {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    };
     const auto never = [](const VolumeTruth&) { return false; };
     auto truth = trace_volume_truth(*reference, volumes.probes, seed, kFewEvents, never, context);
-    const double times = std::min(seconds / std::max(elapsed(), 1e-3), kMostTimes);
+    const double times = std::min(seconds / std::max(seconds_since(start), 1e-3), kMostTimes);
     if (truth && times >= 2) {
         truth = trace_volume_truth(
             *reference, volumes.probes, seed,

@@ -292,9 +292,6 @@ Json make_sweep_json(const SweepResult& result, const SweepAnalysis& analysis) {
     }
     json["base"] = quality_name(result.base);
     json["plan"] = plan_json(result.plan);
-    for (Json& entry : plan_json(result.volume_plan)) {
-        json["plan"].push_back(std::move(entry));
-    }
     if (analysis.answer) {
         json["answer"] = {{"error", analysis.answer->error},
                           {"seconds", analysis.answer->seconds},

@@ -1,12 +1,12 @@
 #include "bake/cli/view/shown_file.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <utility>
 
+#include "bake/base/stage_log.h"
 #include "bake/cli/draw_frames.h"
 #include "formats/opal/emitters.h"
 #include "runtime/picture/auto_exposure.h"
@@ -16,12 +16,6 @@
 
 namespace opaline::cli {
 namespace {
-
-using ViewClock = std::chrono::steady_clock;
-
-double seconds_since(ViewClock::time_point start) {
-    return std::chrono::duration<double>(ViewClock::now() - start).count();
-}
 
 double measured_error(const formats::AssetView& view) {
     const auto json = nlohmann::json::parse(view.provenance, nullptr, false);
@@ -114,7 +108,7 @@ formats::Status ShownFile::choose_rows(const ViewState& state) {
     if (state.error_white > 0 && receiver_errors_.empty()) {
         return stored_errors(asset_, path_).error();
     }
-    const auto start = ViewClock::now();
+    const auto start = bake::Clock::now();
     renderer_.reset();
     lit_for_.reset();
     view_ = whole();
@@ -131,33 +125,27 @@ formats::Status ShownFile::choose_rows(const ViewState& state) {
     }
     coefficients_ = state.coefficients;
     error_white_ = state.error_white;
-    seconds_.load = seconds_since(start);
+    seconds_.load = bake::seconds_since(start);
     return formats::ok_status();
 }
 
-formats::Status ShownFile::make_renderer(const formats::Environment& map,
-                                         const LightWithLayers& layers) {
-    const bool mirrors_layer = layers.parts && runtime::specular_needs(view_).any();
-    if (renderer_ && !mirrors_layer) return formats::ok_status();
-    runtime::GlOptions upload;
-    if (layers.parts) upload.mirrored = &layers.parts->mirrored();
-    renderer_.reset();  // its memory first
-    auto made = runtime::GlRenderer::create(view_, map, upload);
-    if (!made) return made.error();
-    renderer_.emplace(std::move(*made));
+formats::Status ShownFile::light_with(const PictureLight& light, const Shown& shown) {
+    if (auto status = prepare_renderer(view_, light, renderer_); !status) return status;
+    if (auto status = light_renderer(light, shown, *renderer_); !status) return status;
     const runtime::GlStats& stats = renderer_->stats();
     seconds_.upload = stats.upload_seconds + stats.specular_seconds;
+    seconds_.dots = stats.dot_seconds;
     facts_.device = stats.device;
+    facts_.gpu_bytes = stats.gpu_bytes;
+    drawing_.terms = shown.terms;
+    drawing_.background = shown.background;
     return formats::ok_status();
 }
 
 // As project_parts, but turns a light that stays instead of preparing its map anew.
 PartVectors ShownFile::project(const LightWithLayers& layers, const OpenedLight& sky,
                                runtime::MapSampling sampling) {
-    const bool has_rows = !view_.primitives.empty() || !view_.volumes.empty();
-    if (layers.parts || !has_rows) {
-        return project_parts(layers, has_rows ? sky : OpenedLight{}, view_.cubemap_size, 0);
-    }
+    if (layers.parts || !has_rows(view_)) return project_parts(view_, layers, sky, 0);
     if (!light_) {
         light_.emplace(view_.cubemap_size, runtime::SpecularNeeds{});
         light_->set_map(sky.environment, 0);
@@ -171,51 +159,37 @@ PartVectors ShownFile::project(const LightWithLayers& layers, const OpenedLight&
 
 formats::Status ShownFile::relight(const ViewState& state, const formats::Environment& map,
                                    runtime::MapSampling sampling) {
-    const auto start = ViewClock::now();
+    const auto start = bake::Clock::now();
     const OpenedLight sky{
         map,
         runtime::rotation_about_y(static_cast<float>(state.rotate_light * std::numbers::pi / 180))};
     const LightWithLayers layers = light_layers_of(view_, sky, state.time, 0);
-    const PartVectors vectors = project(layers, sky, sampling);
-    seconds_.light = seconds_since(start);
+    const PictureLight light{sky, layers, project(layers, sky, sampling)};
+    seconds_.light = bake::seconds_since(start);
     const std::vector<formats::Rgb> colors = emitter_colors(state);
     const Shown shown = show_terms(state.terms, view_, colors);
     // A renderer_ that has shown a layer goes on to do so.
     if (!view_.clouds.empty() && shown.background != drawing_.background) renderer_.reset();
-    if (auto status = make_renderer(map, layers); !status) return status;
-    if (auto status = renderer_->set_light(vectors.lights(), sky.rotation, shown.emitters);
-        !status) {
-        return status;
-    }
-    if (shown.background && layers.layers) {
-        if (auto status = renderer_->set_layers(*layers.layers); !status) return status;
-    }
-    seconds_.dots = renderer_->stats().dot_seconds;
-    facts_.gpu_bytes = renderer_->stats().gpu_bytes;
-    drawing_.terms = shown.terms;
-    drawing_.background = shown.background;
+    if (auto status = light_with(light, shown); !status) return status;
     error_ = short_rows_.primitives.empty()
                  ? 0
-                 : coefficient_error_of(whole(), view_, vectors.lights(), state.terms);
+                 : coefficient_error_of(whole(), view_, light.parts.lights(), state.terms);
     return formats::ok_status();
 }
 
 // The map of errors under its own light_.
 formats::Status ShownFile::light_errors() {
     const OpenedLight even = error_map_light();
-    if (auto status = make_renderer(even.environment, {}); !status) return status;
-    const PartVectors vectors = project_parts({}, even, view_.cubemap_size, 0);
-    if (auto status = renderer_->set_light(vectors.lights(), even.rotation); !status) return status;
-    seconds_.dots = renderer_->stats().dot_seconds;
-    facts_.gpu_bytes = renderer_->stats().gpu_bytes;
-    drawing_.terms = formats::TermSet::baked;
-    drawing_.background = true;
+    const LightWithLayers none;
+    if (auto status = light_with({even, none, project_parts(view_, none, even, 0)}, {}); !status) {
+        return status;
+    }
     error_ = 0;
     return formats::ok_status();
 }
 
 formats::Result<std::unique_ptr<ShownFile>> ShownFile::open(const std::string& path) {
-    const auto start = ViewClock::now();
+    const auto start = bake::Clock::now();
     auto asset = open_asset(path);
     if (!asset) return asset.error();
     auto errors = formats::read_receiver_errors(asset->file.bytes(), asset->loaded, path);
@@ -224,7 +198,7 @@ formats::Result<std::unique_ptr<ShownFile>> ShownFile::open(const std::string& p
     shown->facts_.has_receiver_errors = !errors->empty();
     shown->facts_.receiver_errors = formats::summarize_errors(*errors);
     shown->receiver_errors_ = std::move(*errors);
-    shown->seconds_.load = seconds_since(start);
+    shown->seconds_.load = bake::seconds_since(start);
     return shown;
 }
 

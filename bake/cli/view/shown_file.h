@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bake/cli/draw_frames.h"
 #include "bake/cli/error_map.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/view/view_state.h"
@@ -85,7 +86,7 @@ class ShownFile {
     const formats::AssetView& whole() const { return asset_.loaded.view; }
     std::vector<formats::Rgb> emitter_colors(const ViewState& state) const;
     formats::Status choose_rows(const ViewState& state);
-    formats::Status make_renderer(const formats::Environment& map, const LightWithLayers& layers);
+    formats::Status light_with(const PictureLight& light, const Shown& shown);
     PartVectors project(const LightWithLayers& layers, const OpenedLight& sky,
                         runtime::MapSampling sampling);
     formats::Status relight(const ViewState& state, const formats::Environment& map,

@@ -48,9 +48,7 @@ constexpr std::array<DecisionRule, 2> kRules{
 }  // namespace
 
 EffectDescriptor describe_incident(Effect id) {
-    return {.id = id, .name = "incident", .rules = kRules, .acts = [](const RowLayout&) {
-                return false;
-            }};
+    return {.id = id, .name = "incident", .rules = kRules};
 }
 
 PlanEntry decide_colour(const PlanInput& input) {

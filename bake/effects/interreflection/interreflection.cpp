@@ -94,7 +94,8 @@ constexpr std::array<DecisionRule, 2> kRules{
     {{"interreflection", is_any_material, decide_interreflection,
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.coloured = entry.on && entry.has_bands;
-      }},
+      },
+      nullptr, nullptr, formats::TermSet::interreflection},
      {"interreflection.textures", has_textures, decide_textures,
       [](const PlanEntry& entry, RowLayout& layout) { layout.filtered = entry.on; }}}};
 constexpr std::array<const KnobSpec*, 1> kKnobs{&kBounceRays};
@@ -117,8 +118,7 @@ EffectDescriptor describe_interreflection(Effect id) {
             .knobs = kKnobs,
             .gather = {.work = bounce_rows_work},
             .exchange_rays = rays_of_receiver,
-            .light_work = bounce_light_work,
-            .held_light = formats::TermSet::interreflection};
+            .light_work = bounce_light_work};
 }
 
 PlanEntry decide_interreflection(const PlanInput& input) {

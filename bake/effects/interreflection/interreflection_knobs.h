@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "bake/plan/bake_plan.h"
@@ -11,17 +10,13 @@ namespace opaline::bake {
 
 namespace bounce_knobs {
 inline bool bounces(const RowLayout&, std::span<const PlanEntry> decisions) {
-    for (const PlanEntry& entry : decisions) {
-        if (entry.name == "interreflection" && entry.on) return true;
-    }
-    return false;
+    return is_on(decisions, "interreflection");
 }
 /// Half of the error may come from bounced light: 1.25 % at 256 rays in a box, and less by the
 /// power 0.8 of more (RESULTS.md, "Interreflection").
 inline double rays_for_error(double error) {
     return std::clamp(256 * std::pow(0.025 / error, 1.25), 16.0, 4096.0);
 }
-inline constexpr std::array<double, 6> kRayLadder{16, 64, 144, 256, 400, 1024};
 }  // namespace bounce_knobs
 
 /// Rays from a receiver to the surfaces that send light to it, where it is not known from sites.
@@ -37,7 +32,7 @@ inline constexpr KnobSpec kBounceRays{
     .preset = {64, 144, 400, 1024},
     .for_target = bounce_knobs::rays_for_error,
     .label = "%g rays to other surfaces",
-    .ladder = bounce_knobs::kRayLadder,
+    .ladder = {16, 64, 144, 256, 400, 1024},
     .theory = {.label = "rays to other surfaces",
                .words = "independent rays; stratified ones do better",
                .rate = -0.5},

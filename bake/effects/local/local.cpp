@@ -83,9 +83,9 @@ EffectDescriptor describe_local(Effect id, std::span<const DecisionRule> rules) 
     return {.id = id,
             .name = "local",
             .rules = rules,
-            .acts = [](const RowLayout& layout) { return layout.at_entry; },
             .prepare = {.run = prepare},
-            .gather = {.add = add,
+            .gather = {.applies = [](const RowLayout& layout) { return layout.at_entry; },
+                       .add = add,
                        .work =
                            [](const SubjectCost& c) {
                                return irradiance_work(c.input, c.receivers, c.layout.occluded);

@@ -41,11 +41,6 @@ void lay_out_views(const PlanEntry& entry, RowLayout& layout) {
     layout.view_harmonics = entry.on ? entry.terms : 0;
 }
 
-constexpr std::array<DecisionRule, 4> kRules{
-    {{"multiple", has_medium, decide_multiple, lay_out},
-     {"multiple.layers", has_inner_media, decide_layers, lay_out_layers},
-     {"multiple.model", has_medium, decide_model, lay_out_model},
-     {"multiple.view", has_medium, decide_views, lay_out_views}}};
 constexpr std::array<const KnobSpec*, 8> kKnobs{&kMultipleModel,  &kViewTerms,   &kSamples,
                                                 &kSamplesPerPath, &kWalksAround, &kWalks,
                                                 &kSites,          &kEpsilon};
@@ -239,10 +234,6 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
         inputs.knobs.seed, receiver.key, rays);
 }
 
-bool takes_even_media(const Knobs& knobs) {
-    return static_cast<MultipleModel>(whole(knobs, kMultipleModel)) == MultipleModel::dipole;
-}
-
 void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings) {
     if (inputs.layout.layered && model_of(inputs.own) != MultipleModel::walks) {
         warn_of_layers(inputs, warnings);
@@ -260,14 +251,17 @@ void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>&
     }
 }
 
-void amend(const EffectInputs& inputs, PlanEntry& entry) {
-    if (entry.name == "multiple.model") {
-        describe_choice(static_cast<const Studied&>(*inputs.own.study).choice, entry);
-    }
-    if (entry.name == "multiple.view") {
-        amend_views(static_cast<const Studied&>(*inputs.own.study).choice.views, inputs, entry);
-    }
-}
+constexpr std::array<DecisionRule, 4> kRules{
+    {{"multiple", has_medium, decide_multiple, lay_out},
+     {"multiple.layers", has_inner_media, decide_layers, lay_out_layers},
+     {"multiple.model", has_medium, decide_model, lay_out_model,
+      [](const EffectInputs& inputs, PlanEntry& entry) {
+          describe_choice(static_cast<const Studied&>(*inputs.own.study).choice, entry);
+      }},
+     {"multiple.view", has_medium, decide_views, lay_out_views,
+      [](const EffectInputs& inputs, PlanEntry& entry) {
+          amend_views(static_cast<const Studied&>(*inputs.own.study).choice.views, inputs, entry);
+      }}}};
 
 }  // namespace
 
@@ -279,13 +273,14 @@ EffectDescriptor describe_multiple(Effect id) {
             .rules = kRules,
             .knobs = kKnobs,
             .pilot = kPilot,
-            .refine_samples = refine_samples,
             .study = {.stage = "profiles", .run = study, .work = profile_work},
             .samples = {.stage = "samples of",
                         .by_subject = true,
                         .applies = needs_samples,
                         .run = take_samples,
-                        .work = samples_work},
+                        .work = samples_work,
+                        .bytes = sample_bytes,
+                        .refine = refine_samples},
             .gather = {.applies = [](const RowLayout& layout) { return !layout.at_entry; },
                        .add = add,
                        .work = multiple_rows_work},
@@ -298,10 +293,7 @@ EffectDescriptor describe_multiple(Effect id) {
                               return multiple_truth_work(cost, truth_points(effort));
                           }},
             .adds_other_light = true,
-            .sample_bytes = sample_bytes,
             .add_at_entry = add_at_entry,
-            .takes_even_media = takes_even_media,
-            .amend = amend,
             .warn_of_model = warn_of_model};
 }
 

@@ -17,7 +17,6 @@ inline bool is_walked(const RowLayout& layout, std::span<const PlanEntry> decisi
            std::ranges::any_of(decisions,
                                [](const PlanEntry& entry) { return entry.on && entry.all_orders; });
 }
-inline constexpr std::array<double, 3> kViewCounts{1, 4, 9};
 
 // Below an error of 3 % more than one sample a path pays. A pilot starts there at once.
 inline double samples_for(double error) {
@@ -39,13 +38,6 @@ inline double sites_for(double error) {
     return error < 0.05 ? 40000 : 20000;
 }
 inline constexpr std::array<std::string_view, 3> kModels{"auto", "dipole", "walks"};
-inline constexpr std::array<double, 7> kSampleLadder{1000, 2000, 4000, 8000, 16000, 32000, 64000};
-inline constexpr std::array<double, 5> kSampleDiagonal{4000, 8000, 16000, 32000, 64000};
-inline constexpr std::array<double, 6> kSampleTruths{300000, 150000, 150000, 60000, 20000, 20000};
-inline constexpr std::array<double, 8> kEpsilonLadder{1e-1, 3e-2, 1e-2, 3e-3,
-                                                      1e-3, 3e-4, 1e-4, 0.0};
-inline constexpr std::array<double, 5> kEpsilonDiagonal{3.2e-2, 8e-3, 2e-3, 5e-4, 1.25e-4};
-inline constexpr std::array<double, 6> kEpsilonTruths{1e-4, 1e-4, 1e-4, 3e-4, 3e-4, 3e-4};
 }  // namespace multiple_knobs
 
 /// Samples on the surface of each medium, at most; exactly, where the user gives them.
@@ -62,9 +54,9 @@ inline constexpr KnobSpec kSamples{
     .preset = {20000, 60000, 150000, 300000},
     .for_target = multiple_knobs::samples_for,
     .label = "%g samples",
-    .ladder = multiple_knobs::kSampleLadder,
-    .diagonal = multiple_knobs::kSampleDiagonal,
-    .truths = multiple_knobs::kSampleTruths,
+    .ladder = {1000, 2000, 4000, 8000, 16000, 32000, 64000},
+    .diagonal = {4000, 8000, 16000, 32000, 64000},
+    .truths = {300000, 150000, 150000, 60000, 20000, 20000},
     .theory = {.label = "surface samples",
                .words = "square of the spacing, where transport is smooth at that scale",
                .rate = -1},
@@ -81,6 +73,7 @@ inline constexpr KnobSpec kMultipleModel{
     .lowest = 0,
     .highest = 2,
     .words = multiple_knobs::kModels,
+    .even_media = static_cast<double>(MultipleModel::dipole),
     .preset = {0, 0, 0, 0},
     .matters = multiple_knobs::carries_light};
 
@@ -96,7 +89,7 @@ inline constexpr KnobSpec kViewTerms{
     .lowest = 1,
     .highest = 9,
     .zero_is_auto = true,
-    .allowed = multiple_knobs::kViewCounts,
+    .allowed = {1, 4, 9},
     .preset = {0, 0, 0, 0},
     .label = "K = %g",
     .matters = multiple_knobs::is_walked};
@@ -146,9 +139,9 @@ inline constexpr KnobSpec kEpsilon{
     .whole = false,
     .preset = {1e-2, 1e-3, 1e-3, 1e-5},
     .label = "epsilon = %g",
-    .ladder = multiple_knobs::kEpsilonLadder,
-    .diagonal = multiple_knobs::kEpsilonDiagonal,
-    .truths = multiple_knobs::kEpsilonTruths,
+    .ladder = {1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 0.0},
+    .diagonal = {3.2e-2, 8e-3, 2e-3, 5e-4, 1.25e-4},
+    .truths = {1e-4, 1e-4, 1e-4, 3e-4, 3e-4, 3e-4},
     .theory = {.label = "gather tolerance \u03b5",
                .words = "each cluster errs by at most \u03b5 (signs differ, so sums err by less)",
                .rate = 1,

@@ -82,17 +82,6 @@ Work single_truth_work(const SubjectCost& cost, double depth_samples) {
     return {0, cost.receivers * depth_samples * kPackets * kEntryPacket.at(cost.input.triangles)};
 }
 
-constexpr std::array<DecisionRule, 2> kRules{
-    {{"single", has_medium, decide_single,
-      [](const PlanEntry& entry, RowLayout& layout) {
-          layout.harmonics = std::max(layout.harmonics, entry.on ? 1u : 0u);
-          layout.all_orders = !entry.on && entry.all_orders;
-      }},
-     {"single.terms", is_anisotropic, decide_terms, [](const PlanEntry& entry, RowLayout& layout) {
-          layout.harmonics = entry.on && layout.harmonics > 0
-                                 ? std::max(layout.harmonics, entry.terms)
-                                 : layout.harmonics;
-      }}}};
 constexpr std::array<const KnobSpec*, 4> kKnobs{&kDepthSamples, &kSingleCubemap, &kPhaseTerms,
                                                 &kPhaseTolerance};
 
@@ -226,8 +215,8 @@ void warn_of_short_series(const PlanInput& input, const PlanEntry& entry,
 }
 
 // No other knob can make up for too few terms of a phase function.
-void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
-                  std::vector<formats::Diagnostic>& warnings) {
+void warn_of_terms(const PlanInput& input, const PlanEntry& entry,
+                   std::vector<formats::Diagnostic>& warnings) {
     if (entry.terms == 0) return;
     warn_of_short_series(input, entry, warnings);
     const std::uint32_t needed = needed_terms(*input.material.medium, input.knobs);
@@ -240,6 +229,20 @@ void warn_of_plan(const PlanInput& input, const PlanEntry& entry,
             "leave --phase-terms out, or give --phase-terms " + std::to_string(needed)));
     }
 }
+
+constexpr std::array<DecisionRule, 2> kRules{
+    {{"single", has_medium, decide_single,
+      [](const PlanEntry& entry, RowLayout& layout) {
+          layout.harmonics = std::max(layout.harmonics, entry.on ? 1u : 0u);
+          layout.all_orders = !entry.on && entry.all_orders;
+      }},
+     {"single.terms", is_anisotropic, decide_terms,
+      [](const PlanEntry& entry, RowLayout& layout) {
+          layout.harmonics = entry.on && layout.harmonics > 0
+                                 ? std::max(layout.harmonics, entry.terms)
+                                 : layout.harmonics;
+      },
+      nullptr, warn_of_terms}}};
 
 }  // namespace
 
@@ -264,7 +267,8 @@ EffectDescriptor describe_single(Effect id) {
                            },
                        .gather_batch = gather_batch,
                        .add = add,
-                       .work = single_rows_work},
+                       .work = single_rows_work,
+                       .typical_rows = typical_rows},
             .truth = {.reference = "rays to twice as many depths",
                       .is_expensive = true,
                       .make = make_truth,
@@ -274,9 +278,7 @@ EffectDescriptor describe_single(Effect id) {
                               return single_truth_work(cost,
                                                        truth_depths(cost.input.knobs, effort));
                           }},
-            .typical_rows = typical_rows,
-            .add_at_entry = add_at_entry,
-            .warn_of_plan = warn_of_plan};
+            .add_at_entry = add_at_entry};
 }
 
 }  // namespace opaline::bake

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 
 #include "bake/plan/bake_plan.h"
@@ -30,13 +29,6 @@ inline double degree_of(double terms) {
 inline double tolerance_for(double error) {
     return 0.5 * error;
 }
-inline constexpr std::array<double, 7> kDepthLadder{1, 2, 4, 6, 8, 16, 32};
-inline constexpr std::array<double, 5> kDepthDiagonal{2, 4, 6, 8, 10};
-inline constexpr std::array<double, 6> kDepthTruths{16, 16, 16, 10, 10, 10};
-inline constexpr std::array<double, 3> kCubemapLadder{8, 16, 32};
-inline constexpr std::array<double, 5> kCubemapDiagonal{8, 8, 8, 16, 16};
-inline constexpr std::array<double, 6> kCubemapTruths{32, 32, 32, 16, 16, 16};
-inline constexpr std::array<double, 5> kTermCounts{1, 4, 9, 16, 25};
 }  // namespace single_knobs
 
 /// Points along the inward normal.
@@ -51,9 +43,9 @@ inline constexpr KnobSpec kDepthSamples{
     .highest = 256,
     .preset = {4, 6, 6, 16},
     .label = "%g depth samples",
-    .ladder = single_knobs::kDepthLadder,
-    .diagonal = single_knobs::kDepthDiagonal,
-    .truths = single_knobs::kDepthTruths,
+    .ladder = {1, 2, 4, 6, 8, 16, 32},
+    .diagonal = {2, 4, 6, 8, 10},
+    .truths = {16, 16, 16, 10, 10, 10},
     .theory = {.label = "depth samples",
                .words = "Gauss-Legendre across the edge of a shadow; faster where light is smooth",
                .rate = -1},
@@ -67,9 +59,9 @@ inline constexpr KnobSpec kSingleCubemap{.name = "single_cubemap",
                                          .at_most_cubemap = true,
                                          .preset = {8, 16, 16, 64},
                                          .label = "single scattering at N = %g",
-                                         .ladder = single_knobs::kCubemapLadder,
-                                         .diagonal = single_knobs::kCubemapDiagonal,
-                                         .truths = single_knobs::kCubemapTruths,
+                                         .ladder = {8, 16, 32},
+                                         .diagonal = {8, 8, 8, 16, 16},
+                                         .truths = {32, 32, 32, 16, 16, 16},
                                          .theory = {.label = "cube map of single scattering",
                                                     .words = "a small light's place is known to a "
                                                              "texel",
@@ -87,10 +79,10 @@ inline constexpr KnobSpec kPhaseTerms{
     .lowest = 1,
     .highest = 25,
     .zero_is_auto = true,
-    .allowed = single_knobs::kTermCounts,
+    .allowed = {1, 4, 9, 16, 25},
     .preset = {0, 0, 0, 0},
     .label = "K = %g",
-    .ladder = single_knobs::kTermCounts,
+    .ladder = {1, 4, 9, 16, 25},
     .theory = {.label = "degree of the phase function",
                .words = "Legendre coefficients of a Henyey-Greenstein function: g to the degree",
                .rate_by_cosine = single_knobs::rate_of_terms,

@@ -140,7 +140,7 @@ void warn_of_reach(const PlanInput& input, const PlanEntry& entry,
                    std::vector<formats::Diagnostic>& warnings) {
     constexpr double kLeastError = 0.25;
     const double target = input.knobs.error_target;
-    if (!(target > 0) || entry.name != "transmission.view" || !(entry.bound > 0)) return;
+    if (!(target > 0) || !(entry.bound > 0)) return;
     const double share = typical_share(*input.material.medium, input.subject);
     if (kLeastError * share <= target) return;
     const bool is_known = input.subject.has_thickness();

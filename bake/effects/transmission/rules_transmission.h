@@ -1,8 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
-
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/knob.h"
 #include "bake/plan/plan_input.h"
@@ -12,13 +9,8 @@ namespace opaline::bake {
 
 namespace transmission_knobs {
 inline bool is_crossed(const RowLayout&, std::span<const PlanEntry> decisions) {
-    return std::ranges::any_of(
-        decisions, [](const PlanEntry& entry) { return entry.on && entry.name == "transmission"; });
+    return is_on(decisions, "transmission");
 }
-inline constexpr std::array<double, 3> kTermCounts{1, 4, 9};
-inline constexpr std::array<double, 5> kViewLadder{16, 32, 64, 256, 1024};
-inline constexpr std::array<double, 5> kViewDiagonal{32, 64, 128, 256, 512};
-inline constexpr std::array<double, 6> kViewTruths{1024, 1024, 1024, 256, 256, 256};
 }  // namespace transmission_knobs
 
 /// Views through a body from each receiver. Their light is spread over the sky between them.
@@ -33,9 +25,9 @@ inline constexpr KnobSpec kStraightViews{
     .highest = 65536,
     .preset = {32, 64, 256, 1024},
     .label = "%g views through bodies",
-    .ladder = transmission_knobs::kViewLadder,
-    .diagonal = transmission_knobs::kViewDiagonal,
-    .truths = transmission_knobs::kViewTruths,
+    .ladder = {16, 32, 64, 256, 1024},
+    .diagonal = {32, 64, 128, 256, 512},
+    .truths = {1024, 1024, 1024, 256, 256, 256},
     .theory = {.label = "views through bodies",
                .words = "the width of what a view's light is spread over",
                .rate = -0.5},
@@ -52,7 +44,7 @@ inline constexpr KnobSpec kStraightTerms{
     .lowest = 1,
     .highest = 9,
     .zero_is_auto = true,
-    .allowed = transmission_knobs::kTermCounts,
+    .allowed = {1, 4, 9},
     .preset = {0, 0, 0, 0},
     .label = "K = %g through bodies",
     .matters = transmission_knobs::is_crossed};

@@ -183,11 +183,13 @@ constexpr std::array<DecisionRule, 2> kRules{
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.constant = layout.constant || entry.on;
           layout.fills_crossed = !entry.on && entry.all_orders;
-      }},
+      },
+      nullptr, nullptr, formats::TermSet::unscattered},
      {"transmission.view", has_medium, decide_straight_views,
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.straight_harmonics = entry.on ? entry.terms : 0;
-      }}}};
+      },
+      nullptr, warn_of_reach}}};
 constexpr std::array<const KnobSpec*, 2> kKnobs{&kStraightViews, &kStraightTerms};
 
 struct Body : Prepared {
@@ -294,9 +296,7 @@ EffectDescriptor describe_transmission(Effect id) {
                           [](const SubjectCost& cost, TruthEffort effort) {
                               return straight_truth_work(cost, 2.0 * truth_views(effort));
                           }},
-            .held_light = formats::TermSet::unscattered,
             .look_through = look_from_all,
-            .warn_of_plan = warn_of_reach,
             .warn_of_model = warn_of_model};
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "bake/effects/effects.h"
 #include "bake/emitters/emitter_knobs.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/support/volumes.h"
@@ -77,7 +78,7 @@ TEST(PlanEmitters, AFlameLightsSurfacesUnlessTheyAreTooFar) {
 }
 
 TEST(PlanEmitters, QualitiesHaveEverMoreRaysAndParticles) {
-    const EffectDescriptor effect = describe_emitters(Effect{});
+    const EffectDescriptor effect = all_effects()[Effect::emitters];
     EXPECT_EQ(effect.name, "emitters");
     for (const KnobSpec* knob : effect.knobs) {
         EXPECT_LT(knob->preset[0], knob->preset[1]);

@@ -19,8 +19,8 @@ std::vector<formats::Diagnostic> describe_forward(float g, std::uint32_t terms) 
     Knobs knobs;
     knobs.set(kPhaseTerms, terms);
     std::vector<formats::Diagnostic> warnings;
-    all_effects()[Effect::single].warn_of_plan({scene.materials[0], unknown, knobs}, entry,
-                                               warnings);
+    all_effects()[Effect::single].rules[1].warn({scene.materials[0], unknown, knobs}, entry,
+                                                warnings);
     return warnings;
 }
 

@@ -17,7 +17,7 @@ namespace {
 
 SweepSubject subject_of_layer(const formats::Scene& scene) {
     const Knobs preview = *resolve_knobs(all_effects(), {});
-    return sweep_subject(all_effects(), scene, {}, preview, plan_layers(scene, preview).entries);
+    return sweep_subject(all_effects(), scene, plan_layers(scene, preview).entries, preview);
 }
 
 TEST(LayerSweep, LaddersOfALayerAloneAreThoseOfItsTwoKnobs) {

@@ -23,7 +23,7 @@ formats::Scene make_cloud() {
 
 SweepSubject subject_of(const formats::Scene& scene) {
     const Knobs preview = *resolve_knobs(all_effects(), {});
-    return sweep_subject(all_effects(), scene, {}, preview, plan_volumes(scene, preview).entries);
+    return sweep_subject(all_effects(), scene, plan_volumes(scene, preview).entries, preview);
 }
 
 TEST(VolumeSweep, LaddersOfACloudAloneAreThoseOfItsKnobs) {

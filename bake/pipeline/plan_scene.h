@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/lamps/lamps.h"
+#include "bake/layers/bake_layers.h"
+#include "bake/plan/effect.h"
+#include "bake/volumes/plan_volumes.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Everything that a bake of a scene decides before it traces.
+struct ScenePlan {
+    SceneFacts facts;                ///< that decisions on materials were made from
+    std::vector<PlanEntry> entries;  ///< on materials, volumes, layers, emitters, in this order
+    // What is baked besides rows of materials.
+    std::vector<VolumeLayout> volumes;
+    std::vector<LayerLayout> layers;
+    std::vector<Lamp> lamps;
+
+    std::size_t count_emitters() const {
+        return bake::count_emitters(lamps, count_glowing(volumes));
+    }
+};
+
+ScenePlan plan_scene(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs);
+
+}  // namespace opaline::bake
