@@ -11,7 +11,7 @@ namespace {
 
 // Ladders that converge: of what all effects share, then of each effect's knobs.
 std::vector<Ladder> converging_ladders(const SweepSubject& subject) {
-    std::vector<Ladder> ladders{Ladder::resolution, Ladder::coefficients};
+    std::vector<Ladder> ladders{Ladders::resolution, Ladders::coefficients};
     for (const KnobSpec* knob : subject.knobs) {
         ladders.push_back(ladder_of(*knob));
     }
@@ -19,12 +19,6 @@ std::vector<Ladder> converging_ladders(const SweepSubject& subject) {
         ladders.push_back(ladder_of(*chosen.knob));
     }
     return ladders;
-}
-
-// The knob as theory counts it.
-double theory_value(const Ladder& ladder, double value) {
-    const auto count = ladder.knob != nullptr ? ladder.knob->theory.value : nullptr;
-    return count != nullptr ? count(value) : value;
 }
 
 struct Member {
@@ -37,13 +31,13 @@ std::vector<Member> members_of(const SweepResult& result, const Ladder& ladder) 
     for (const PointRecord& record : result.points) {
         for (const Rung& rung : record.point.rungs) {
             if (rung.ladder == ladder) {
-                members.push_back({theory_value(ladder, rung.value), &record});
+                const auto count = ladder.theory.value;
+                members.push_back({count != nullptr ? count(rung.value) : rung.value, &record});
             }
         }
     }
-    const bool fine_is_small = ladder.knob != nullptr && ladder.knob->theory.fine_is_small;
     std::sort(members.begin(), members.end(), [&](const Member& a, const Member& b) {
-        return fine_is_small ? a.value > b.value : a.value < b.value;
+        return ladder.theory.fine_is_small ? a.value > b.value : a.value < b.value;
     });
     return members;
 }
@@ -51,9 +45,8 @@ std::vector<Member> members_of(const SweepResult& result, const Ladder& ladder) 
 // A rung next to the finest shares most of its error and looks too good. Half of a surface's
 // coefficients vanish, so "all" counts as half.
 bool is_near(const Ladder& ladder, double value, double finest) {
-    const double near = ladder == Ladder::coefficients ? 4.01 : 2.01;
-    const bool by_step = ladder.knob != nullptr && ladder.knob->theory.rate_by_cosine != nullptr;
-    return !by_step && value > 0 && finest > 0 &&
+    const double near = ladder == Ladders::coefficients ? 4.01 : 2.01;
+    return ladder.theory.rate_by_cosine == nullptr && value > 0 && finest > 0 &&
            std::max(value, finest) <= near * std::min(value, finest);
 }
 
@@ -88,9 +81,9 @@ std::optional<LadderFit> fit_ladder(const SweepResult& result, const Ladder& lad
 
 // Against samples of its own truth, none of which it shares: nothing is too near.
 LadderFit fit_reference(const ReferenceLadder& reference) {
-    auto theory = convergence_theory(Ladder::reference_samples, 0);
+    auto theory = convergence_theory(Ladders::reference_samples, 0);
     LadderFit fit{
-        Ladder::reference_samples,
+        Ladders::reference_samples,
         std::move(*theory),
         std::to_string(reference.truth_samples) + " other samples under " + reference.light,
         {},

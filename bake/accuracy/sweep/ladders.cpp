@@ -78,22 +78,22 @@ void add_transport_ladders(Points& points, const Knobs& base) {
     for (const std::uint32_t n : {8u, 16u, 32u, 64u}) {
         Knobs knobs = base;
         knobs.cubemap_size = n;
-        points.add("N = " + std::to_string(n), Ladder::cubemap, n, knobs);
+        points.add("N = " + std::to_string(n), Ladders::cubemap, n, knobs);
         knobs.coefficients = kAllCoefficients;
         knobs.code_bits = 16;
-        points.add("N = " + std::to_string(n) + ", all coefficients, 16 bits", Ladder::resolution,
+        points.add("N = " + std::to_string(n) + ", all coefficients, 16 bits", Ladders::resolution,
                    n, knobs);
     }
     for (const std::uint32_t m : {16u, 32u, 64u, 128u, 256u, 512u, 1024u, kAllCoefficients}) {
         Knobs knobs = base;
         knobs.coefficients = m;
-        points.add("M = " + coefficients_text(knobs), Ladder::coefficients,
+        points.add("M = " + coefficients_text(knobs), Ladders::coefficients,
                    coefficient_count(knobs), knobs);
     }
     Knobs knobs = base;
     knobs.code_bits = 16;
-    points.add("16-bit codes", Ladder::code_bits, 16, knobs);
-    points.add("8-bit codes", Ladder::code_bits, 8, base);
+    points.add("16-bit codes", Ladders::code_bits, 16, knobs);
+    points.add("8-bit codes", Ladders::code_bits, 8, base);
 }
 
 // Every choice in three presets: its cost, and the error that it cannot go below.
@@ -132,7 +132,7 @@ void add_knob_ladders(Points& points, const Knobs& base) {
     for (const bool exact : {false, true}) {
         Knobs knobs = base;
         knobs.exact_rays = exact;
-        points.add(exact ? "rays instead of light maps" : "light maps", Ladder::exact_rays,
+        points.add(exact ? "rays instead of light maps" : "light maps", Ladders::exact_rays,
                    exact ? 1 : 0, knobs);
     }
 }
@@ -146,11 +146,11 @@ void add_grid(Points& points, const Knobs& base) {
             knobs.cubemap_size = n;
             knobs.coefficients = m;
             const std::string label = "N = " + std::to_string(n) + ", M = " + std::to_string(m);
-            points.add(label, Ladder::grid, n, knobs);
+            points.add(label, Ladders::grid, n, knobs);
             // The error of 8-bit codes shows where little is truncated.
             if (m >= 256) {
                 knobs.code_bits = 16;
-                points.add(label + ", 16 bits", Ladder::grid, n, knobs);
+                points.add(label + ", 16 bits", Ladders::grid, n, knobs);
             }
         }
     }
@@ -168,7 +168,7 @@ void add_diagonal(Points& points, const Knobs& base) {
             }
         }
         points.add("all knobs " + std::string(step < 0 ? "" : "+") + std::to_string(step),
-                   Ladder::diagonal, step, knobs);
+                   Ladders::diagonal, step, knobs);
     }
 }
 
@@ -189,8 +189,8 @@ std::vector<SweepPoint> make_layer_truths(const LadderRequest& request) {
     Points points{request.subject};
     const Knobs reference = preset_knobs(request, Quality::reference);
     points.list.push_back({"tables finer than reference", {}, with_truths(request, reference, 0)});
-    points.add("reference", Ladder::preset, 3, reference);
-    points.add("production", Ladder::preset, 2, preset_knobs(request, Quality::production));
+    points.add("reference", Ladders::preset, 3, reference);
+    points.add("production", Ladders::preset, 2, preset_knobs(request, Quality::production));
     return std::move(points.list);
 }
 
@@ -284,8 +284,8 @@ bool same_bake(const Knobs& a, const Knobs& b, const SweepSubject& subject) {
 std::vector<SweepPoint> make_ladders(const LadderRequest& request, Quality base) {
     Points points{request.subject};
     for (std::size_t q = 0; q < kQualities.size(); ++q) {
-        points.add(std::string(quality_name(kQualities[q])), Ladder::preset, static_cast<double>(q),
-                   preset_knobs(request, kQualities[q]));
+        points.add(std::string(quality_name(kQualities[q])), Ladders::preset,
+                   static_cast<double>(q), preset_knobs(request, kQualities[q]));
     }
     add_choices(points, request);
     const Knobs knobs = preset_knobs(request, base);
@@ -317,10 +317,10 @@ std::vector<SweepPoint> make_truths(const LadderRequest& request) {
     if (is_opaque) {
         Knobs finest = reference;
         finest.cubemap_size = 128;
-        points.add("N = 128, all coefficients, 16 bits", Ladder::resolution, 128, finest);
+        points.add("N = 128, all coefficients, 16 bits", Ladders::resolution, 128, finest);
     }
     if (of.empty()) {
-        points.add("reference", Ladder::preset, 3, reference);
+        points.add("reference", Ladders::preset, 3, reference);
     } else {
         points.list.push_back({of + "reference", {}, reference});
     }

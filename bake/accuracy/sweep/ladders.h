@@ -14,34 +14,46 @@ namespace opaline::bake {
 struct Ladder {
     std::string_view name;           ///< as in tables and files; no two ladders share it
     const KnobSpec* knob = nullptr;  ///< of one effect's knob
+    KnobTheory theory{};             ///< how errors fall along it
 
     bool operator==(const Ladder& other) const { return name == other.name; }
     bool operator<(const Ladder& other) const { return name < other.name; }
-
-    static const Ladder preset;        ///< draft, preview, production, reference
-    static const Ladder cubemap;       ///< N, all else as in the base
-    static const Ladder resolution;    ///< N with all coefficients in 16 bits: N alone
-    static const Ladder coefficients;  ///< M
-    static const Ladder code_bits;     ///< of the stored coefficients
-    static const Ladder exact_rays;    ///< 0: light maps and shared rays, 1: neither
-    static const Ladder grid;          ///< N and M together
-    static const Ladder diagonal;      ///< all knobs together, step by step
-    /// Of the Monte Carlo reference, which is no bake and has no points.
-    static const Ladder reference_samples;
 };
-inline constexpr Ladder Ladder::preset{"preset"};
-inline constexpr Ladder Ladder::cubemap{"cubemap"};
-inline constexpr Ladder Ladder::resolution{"resolution"};
-inline constexpr Ladder Ladder::coefficients{"coefficients"};
-inline constexpr Ladder Ladder::code_bits{"code_bits"};
-inline constexpr Ladder Ladder::exact_rays{"exact_rays"};
-inline constexpr Ladder Ladder::grid{"grid"};
-inline constexpr Ladder Ladder::diagonal{"diagonal"};
-inline constexpr Ladder Ladder::reference_samples{"reference_samples"};
+
+/// Those of no effect's knob.
+struct Ladders {
+    static constexpr Ladder preset{"preset"};    ///< draft, preview, production, reference
+    static constexpr Ladder cubemap{"cubemap"};  ///< N, all else as in the base
+    /// N with all coefficients in 16 bits: N alone.
+    static constexpr Ladder resolution{
+        "resolution",
+        nullptr,
+        {.label = "cube map size N",
+         .words = "a small light's place is known to a texel: error in proportion to 1/N",
+         .rate = -1}};
+    /// M.
+    static constexpr Ladder coefficients{
+        "coefficients",
+        nullptr,
+        {.label = "coefficients M",
+         .words = "M largest Haar coefficients of a function with edges along curves, in L2 "
+                  "[DeVore1998]; relit values converge faster, as light has few too",
+         .rate = -0.5}};
+    static constexpr Ladder code_bits{"code_bits"};    ///< of the stored coefficients
+    static constexpr Ladder exact_rays{"exact_rays"};  ///< 0: light maps, shared rays; 1: neither
+    static constexpr Ladder grid{"grid"};              ///< N and M together
+    static constexpr Ladder diagonal{"diagonal"};      ///< all knobs together, step by step
+    /// Of the Monte Carlo reference, which is no bake and has no points.
+    static constexpr Ladder reference_samples{"reference_samples",
+                                              nullptr,
+                                              {.label = "samples of the Monte Carlo reference",
+                                               .words = "independent paths, whose variances add",
+                                               .rate = -0.5}};
+};
 
 /// The ladder of an effect's knob.
 constexpr Ladder ladder_of(const KnobSpec& knob) {
-    return {knob.name, &knob};
+    return {knob.name, &knob, knob.theory};
 }
 
 /// A point's place on a ladder: `value` is the knob's (of a choice its place among the words), or 0

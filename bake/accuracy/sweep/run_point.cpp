@@ -169,9 +169,9 @@ int urgency(const SweepPoint& point) {
                            [&](const Rung& r) { return r.ladder == ladder; });
     };
     const Ladder& first = point.rungs.front().ladder;
-    return stands_on(Ladder::preset)                             ? 0
+    return stands_on(Ladders::preset)                            ? 0
            : first.knob != nullptr && !first.knob->words.empty() ? 1
-           : first == Ladder::grid                               ? 3
+           : first == Ladders::grid                              ? 3
                                                                  : 2;
 }
 

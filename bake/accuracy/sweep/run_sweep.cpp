@@ -259,7 +259,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     }
     // A quick point measures the speed of this machine.
     const SweepPoint first{
-        std::string(quality_name(Quality::draft)), {{Ladder::preset, 0}}, *draft};
+        std::string(quality_name(Quality::draft)), {{Ladders::preset, 0}}, *draft};
     if (auto status = sweep.visit(first, sweep.left()); !status) return std::move(status).error();
     if (result.points.empty()) {
         return make_time_error("not even a draft fits: it " + result.skipped.front().reason);

@@ -61,21 +61,7 @@ std::optional<Slope> fit_slope(std::span<const Convergence> rungs, bool semi_log
 }
 
 std::optional<Theory> convergence_theory(const Ladder& ladder, double g) {
-    if (ladder == Ladder::resolution) {
-        return Theory{-1, false, "cube map size N",
-                      "a small light's place is known to a texel: error in proportion to 1/N"};
-    }
-    if (ladder == Ladder::coefficients) {
-        return Theory{-0.5, false, "coefficients M",
-                      "M largest Haar coefficients of a function with edges along curves, in L2 "
-                      "[DeVore1998]; relit values converge faster, as light has few too"};
-    }
-    if (ladder == Ladder::reference_samples) {
-        return Theory{-0.5, false, "samples of the Monte Carlo reference",
-                      "independent paths, whose variances add"};
-    }
-    if (ladder.knob == nullptr) return std::nullopt;
-    const KnobTheory& theory = ladder.knob->theory;
+    const KnobTheory& theory = ladder.theory;
     const bool semi_log = theory.rate_by_cosine != nullptr;
     const double rate = semi_log ? theory.rate_by_cosine(g) : theory.rate;
     return rate == 0 ? std::nullopt

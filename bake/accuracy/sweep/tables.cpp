@@ -125,7 +125,7 @@ Cells cells_of(const SweepResult& result, const SweepAnalysis& analysis, std::si
 Cells cells_of(const ReferenceRung& rung, const Cells& like) {
     const std::map<std::string, std::string> known{
         {"label", text_cell("Monte Carlo, " + std::to_string(rung.samples) + " samples")},
-        {"ladders", std::string(Ladder::reference_samples.name)},
+        {"ladders", std::string(Ladders::reference_samples.name)},
         {"truth", "0"},
         {"seconds", number_cell(rung.seconds)},
         {"error", number_cell(rung.error)},

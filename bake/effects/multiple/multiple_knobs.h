@@ -73,7 +73,7 @@ inline constexpr KnobSpec kMultipleModel{
     .lowest = 0,
     .highest = 2,
     .words = multiple_knobs::kModels,
-    .even_media = static_cast<double>(MultipleModel::dipole),
+    .even_media = 1,  // dipole
     .preset = {0, 0, 0, 0},
     .matters = multiple_knobs::carries_light};
 

@@ -28,7 +28,7 @@ TEST(Analysis, RateIsMeasuredWithinTheLadderWhateverElseErrs) {
         result.points.push_back(rung(ladder_of(kSamples), s, 1 + 8 / s));
     }
     // The truth is elsewhere: another knob is what makes the ladder's common error.
-    result.points.push_back(rung(Ladder::grid, 1, 0.5));
+    result.points.push_back(rung(Ladders::grid, 1, 0.5));
     result.truth = 5;
     result.subject.knobs = {&kSamples};
     const SweepAnalysis analysis = analyse_sweep(result);
@@ -64,7 +64,7 @@ TEST(Analysis, ToleranceZeroIsTheFinestAndTermsCountAsDegrees) {
 TEST(Analysis, ErrorsAgreeWhereIntervalsMeetAndTheFinestIsNotAsked) {
     SweepResult result;
     for (const double high : {0.1, 0.3, 0.3}) {
-        PointRecord record = rung(Ladder::grid, 1, 1);
+        PointRecord record = rung(Ladders::grid, 1, 1);
         record.error.ci95[0] = 0.2;
         record.error.ci95[1] = 0.4;
         record.against_finest.ci95[1] = high;
@@ -87,7 +87,7 @@ TEST(Analysis, EachWayToComputeHasAFrontOfItsOwnInTimeAndTotalError) {
     for (const Bake& bake :
          {Bake{"dipole", 1, 0.1, 0.32}, Bake{"walks", 2, 0.2, 0.21}, Bake{"dipole", 4, 0.01, 0.3},
           Bake{"walks", 8, 0.02, 0.03}, Bake{"dipole", 3, 0.15, 0.33}}) {
-        PointRecord record = rung(Ladder::grid, 1, 1);
+        PointRecord record = rung(Ladders::grid, 1, 1);
         record.choices = bake.choices;
         record.seconds = bake.seconds;
         record.error.rms_relative = bake.numerical;

@@ -59,7 +59,7 @@ TEST(Ladders, KnobsOfEffectsThatAreOffAreLeftOut) {
     for (const KnobSpec* knob : kFog.knobs) {
         EXPECT_FALSE(opaque.contains(ladder_of(*knob))) << knob->name;
     }
-    EXPECT_FALSE(opaque.contains(Ladder::exact_rays));
+    EXPECT_FALSE(opaque.contains(Ladders::exact_rays));
     const auto marble = ladders_in(make_ladders(kMarble, {}, Quality::preview));
     EXPECT_TRUE(marble.contains(ladder_of(kSamples)));
     EXPECT_TRUE(marble.contains(ladder_of(kDepthSamples)));
@@ -84,8 +84,8 @@ TEST(Ladders, OneAtATimeChangesOneKnobOfThePreview) {
     int found = 0;
     for (const SweepPoint& p : make_ladders(kFog, {}, Quality::preview)) {
         for (const Rung& r : p.rungs) {
-            if (r.ladder == Ladder::cubemap || r.ladder == Ladder::coefficients ||
-                r.ladder == Ladder::code_bits || r.ladder == Ladder::exact_rays ||
+            if (r.ladder == Ladders::cubemap || r.ladder == Ladders::coefficients ||
+                r.ladder == Ladders::code_bits || r.ladder == Ladders::exact_rays ||
                 r.ladder.knob != nullptr) {
                 EXPECT_LE(count_changes(p.knobs, base), 1) << p.label;
                 ++found;
@@ -134,7 +134,7 @@ TEST(Ladders, KnobsOfAWayThatThePlanDidNotChooseAreTriedThatWay) {
     often.choice = "walks";
     formats::Scene scene;
     const std::vector<PlanEntry> plan{often};
-    const SweepSubject subject = sweep_subject(all_effects(), scene, {}, *resolve_knobs({}), plan);
+    const SweepSubject subject = sweep_subject(all_effects(), scene, plan, *resolve_knobs({}));
     EXPECT_TRUE(subject.has(kVolumeWalks));
     EXPECT_FALSE(subject.has(kVolumePaths));
     std::set<double> paths;

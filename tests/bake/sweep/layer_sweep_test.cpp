@@ -36,7 +36,7 @@ TEST(LayerSweep, LaddersOfALayerAloneAreThoseOfItsTwoKnobs) {
         }
     }
     EXPECT_EQ(ladders, (std::set<Ladder>{ladder_of(kCloudStep), ladder_of(kCloudNodes),
-                                         Ladder::preset, Ladder::diagonal}));
+                                         Ladders::preset, Ladders::diagonal}));
 }
 
 TEST(LayerSweep, TruthsOfALayerAloneAreFineTablesNotAllCoefficients) {

@@ -32,7 +32,7 @@ SweepResult small_sweep(const std::string& name) {
     for (std::size_t i = 0; i < 3; ++i) {
         PointRecord record;
         record.point.label = i == 0 ? "reference" : "N = 8, M = " + std::to_string(i);
-        record.point.rungs = {{i == 0 ? Ladder::preset : Ladder::grid, 3}};
+        record.point.rungs = {{i == 0 ? Ladders::preset : Ladders::grid, 3}};
         record.seconds = seconds[i];
         record.groups = {{"preparation", 1.0}, {"direct: rows", 1.0}};
         record.bytes = 3000 - 1000 * i;

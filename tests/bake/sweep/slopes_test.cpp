@@ -77,8 +77,8 @@ TEST(Slopes, NothingIsClaimedOfLessThanTwoPoints) {
 }
 
 TEST(Slopes, SwitchesAndIsotropicPhaseFunctionsHaveNoRate) {
-    EXPECT_FALSE(convergence_theory(Ladder::exact_rays, 0.5));
-    EXPECT_FALSE(convergence_theory(Ladder::preset, 0.5));
+    EXPECT_FALSE(convergence_theory(Ladders::exact_rays, 0.5));
+    EXPECT_FALSE(convergence_theory(Ladders::preset, 0.5));
     EXPECT_FALSE(convergence_theory(ladder_of(kPhaseTerms), 0));
 }
 

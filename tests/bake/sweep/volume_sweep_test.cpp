@@ -42,10 +42,10 @@ TEST(VolumeSweep, LaddersOfACloudAloneAreThoseOfItsKnobs) {
     }
     EXPECT_TRUE(ladders.contains(ladder_of(kVolumeMethod))) << "one line a method";
     EXPECT_TRUE(ladders.contains(ladder_of(kVolumePaths))) << "though auto takes walks";
-    EXPECT_TRUE(ladders.contains(Ladder::preset));
-    EXPECT_TRUE(ladders.contains(Ladder::diagonal));
-    EXPECT_FALSE(ladders.contains(Ladder::coefficients));
-    EXPECT_FALSE(ladders.contains(Ladder::grid));
+    EXPECT_TRUE(ladders.contains(Ladders::preset));
+    EXPECT_TRUE(ladders.contains(Ladders::diagonal));
+    EXPECT_FALSE(ladders.contains(Ladders::coefficients));
+    EXPECT_FALSE(ladders.contains(Ladders::grid));
 }
 
 TEST(VolumeSweep, PointsHaveErrorsOfFourKindsOfLight) {
