@@ -9,6 +9,7 @@
 #include "bake/emitters/light_media.h"
 #include "bake/emitters/media_patches.h"
 #include "bake/exchange/other_light.h"
+#include "bake/receivers/surface_patches.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 
 namespace opaline::bake {
