@@ -261,12 +261,13 @@ std::size_t count_scatterers(std::uint32_t rays_of_receiver) {
     return static_cast<std::size_t>(std::clamp(kPerRay * rays_of_receiver, kFewest, kMost));
 }
 
-std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
-                                                     std::uint64_t& rays) {
+std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs, std::uint64_t& rays,
+                                                     Bounces bounces) {
     const std::uint32_t count = inputs.rays_of_receiver;
     std::vector<Scatterer> scatterers = find_scatterers(inputs, count_scatterers(count), rays);
     if (scatterers.empty()) return nullptr;
-    const bool is_coloured = std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
+    const bool is_coloured =
+        bounces == Bounces::none || std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
     add_spread(inputs, scatterers);
     ScattererLight own = light_scatterers(inputs, scatterers, is_coloured ? 3 : 1, rays);
     const Field field{inputs, scatterers, own};
@@ -283,9 +284,16 @@ std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
                     .of_averaged = make_bounce_grid(kRaysOfAveraged),
                     .sites = {},
                     .site_rows = {}});
-    const std::vector<Arrivals> arrivals = weigh_scatterers(field, light->tree, rays);
-    light->bounces = add_bounces(field, arrivals, light->tree);
-    light_sites(inputs, *light, rays);
+    if (bounces == Bounces::all) {
+        const std::vector<Arrivals> arrivals = weigh_scatterers(field, light->tree, rays);
+        light->bounces = add_bounces(field, arrivals, light->tree);
+        light_sites(inputs, *light, rays);
+        return light;
+    }
+    if (own.crossing.count() > 0) {
+        weigh_scatterers(field, light->tree, rays);  // which adds what crosses media to `emitted`
+    }
+    light->tree.set_rows(own.emitted, inputs.context);
     return light;
 }
 

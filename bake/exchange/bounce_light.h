@@ -46,9 +46,12 @@ struct BounceLight {
     }
 };
 
-/// Places scatterers and finds their light; null where receivers see no surface. `rays` counts up.
-std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs,
-                                                     std::uint64_t& rays);
+enum class Bounces : std::uint8_t { none, all };
+
+/// Places scatterers and finds their light; null where nobody sees a surface. Without bounces it is
+/// what they make of the sky's light, in three bands, and knows no sites. `rays` counts up.
+std::shared_ptr<const BounceLight> find_bounce_light(const LightInputs& inputs, std::uint64_t& rays,
+                                                     Bounces bounces = Bounces::all);
 
 /// What answers a view.
 struct SeenNode {

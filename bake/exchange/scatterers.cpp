@@ -94,15 +94,21 @@ void filter_albedo(const LightInputs& inputs, std::span<const Seen> all,
 
 }  // namespace
 
-SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane) {
+SeenSide side_of(const formats::Material& material, glm::vec3 normal, float cosine) {
     SeenSide side;
-    const glm::vec3 normal{hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]};
-    const formats::Material& material = scene.materials[hits.material[lane]];
-    side.behind = hits.cosine[lane] > 0;
-    side.is_seen = hits.hit[lane] != 0 && normal != glm::vec3(0) &&
+    side.behind = cosine > 0;
+    side.is_seen = normal != glm::vec3(0) &&
                    (!side.behind || material.sheet || (material.double_sided && !material.medium));
     side.normal = side.behind ? -normal : normal;
-    side.cosine = std::abs(hits.cosine[lane]);
+    side.cosine = std::abs(cosine);
+    return side;
+}
+
+SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane) {
+    SeenSide side =
+        side_of(scene.materials[hits.material[lane]],
+                {hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]}, hits.cosine[lane]);
+    side.is_seen = side.is_seen && hits.hit[lane] != 0;
     return side;
 }
 
@@ -112,7 +118,8 @@ double count_scatterer_rays(std::size_t receivers) {
 
 std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
                                        std::uint64_t& rays) {
-    const std::vector<Receiver> probes = draw_probes(inputs.bake.scene, inputs.bake.receivers);
+    std::vector<Receiver> probes = draw_probes(inputs.bake.scene, inputs.bake.receivers);
+    probes.insert(probes.end(), inputs.onlookers.begin(), inputs.onlookers.end());
     struct Part {
         std::vector<Seen> seen;
         std::uint64_t rays = 0;

@@ -51,6 +51,53 @@ LookThrough make_look(const BakeInputs& bake, const SubjectState& subject, const
     return {};
 }
 
+// Calls make(inputs) with what an effect may ask for.
+template <class Make>
+auto with_light_inputs(const LightRequest& request, std::vector<std::uint8_t> acts,
+                       std::uint64_t& rays, Make&& make) {
+    const BakeInputs& bake = request.bake;
+    const Knobs& knobs = request.knobs;
+    const auto subject_of = [&](std::uint32_t material) -> SubjectState& {
+        return *std::ranges::find(request.subjects, material, &SubjectState::material);
+    };
+    const auto crossing_rows = [&](std::uint32_t material, std::span<const Receiver> outside,
+                                   std::span<const BodyPoint> inside, std::uint32_t cubemap_size) {
+        SubjectState& own = subject_of(material);
+        return with_some(bake.effects, own, lets_cross, [&] {
+            return rows_of_points(bake, coarse_knobs(bake.effects, knobs, cubemap_size),
+                                  request.context, own, outside, inside, rays);
+        });
+    };
+    const auto answer_of_medium =
+        [&](std::uint32_t material, const OtherLight& columns, std::span<const Receiver> outside,
+            std::span<const BodyPoint> inside, std::uint32_t cubemap_size) {
+            BakeInputs lit = bake;
+            lit.light = &columns;
+            SubjectState& own = subject_of(material);
+            return with_some(bake.effects, own, scatters, [&] {
+                return rows_of_points(lit, coarse_knobs(bake.effects, knobs, cubemap_size),
+                                      request.context, own, outside, inside, rays);
+            });
+        };
+    const auto look_through = [&](std::uint32_t material) {
+        const auto own = std::ranges::find(request.subjects, material, &SubjectState::material);
+        return own == request.subjects.end()
+                   ? LookThrough()
+                   : make_look(bake, *own, coarse_knobs(bake.effects, knobs, knobs.cubemap_size),
+                               request.context);
+    };
+    LightInputs inputs{bake,
+                       knobs,
+                       request.context,
+                       request.layouts,
+                       std::move(acts),
+                       crossing_rows,
+                       answer_of_medium,
+                       look_through};
+    inputs.onlookers = request.onlookers;
+    return make(inputs);
+}
+
 }  // namespace
 
 Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size) {
@@ -66,58 +113,34 @@ Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t
     return settle(std::move(coarse));
 }
 
-std::unique_ptr<OtherLight> find_shared_light(const BakeInputs& bake, const Knobs& knobs,
-                                              const Context& context,
-                                              std::span<const RowLayout> layouts,
-                                              std::vector<SubjectState>& subjects, StageLog& log) {
-    for (std::size_t e = 0; e < bake.effects.effects.size(); ++e) {
-        const EffectDescriptor& effect = bake.effects.effects[e];
-        std::vector<std::uint8_t> acts(layouts.size());
-        for (const SubjectState& subject : subjects) {
+std::unique_ptr<OtherLight> find_shared_light(const LightRequest& request) {
+    const auto& effects = request.bake.effects.effects;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        const EffectDescriptor& effect = effects[e];
+        std::vector<std::uint8_t> acts(request.layouts.size());
+        for (const SubjectState& subject : request.subjects) {
             acts[subject.material] = subject.effects[e].acts ? 1 : 0;
         }
         if (effect.make_light == nullptr || std::ranges::count(acts, 1) == 0) continue;
         const std::string name(effect.name);
-        auto light = run_stage(log, name, name + ": scatterers", [&](std::uint64_t& rays) {
-            const auto subject_of = [&](std::uint32_t material) -> SubjectState& {
-                return *std::ranges::find(subjects, material, &SubjectState::material);
-            };
-            const auto crossing_rows =
-                [&](std::uint32_t material, std::span<const Receiver> outside,
-                    std::span<const BodyPoint> inside, std::uint32_t cubemap_size) {
-                    SubjectState& own = subject_of(material);
-                    return with_some(bake.effects, own, lets_cross, [&] {
-                        return rows_of_points(bake, coarse_knobs(bake.effects, knobs, cubemap_size),
-                                              context, own, outside, inside, rays);
-                    });
-                };
-            const auto answer_of_medium = [&](std::uint32_t material, const OtherLight& columns,
-                                              std::span<const Receiver> outside,
-                                              std::span<const BodyPoint> inside,
-                                              std::uint32_t cubemap_size) {
-                BakeInputs lit = bake;
-                lit.light = &columns;
-                SubjectState& own = subject_of(material);
-                return with_some(bake.effects, own, scatters, [&] {
-                    return rows_of_points(lit, coarse_knobs(bake.effects, knobs, cubemap_size),
-                                          context, own, outside, inside, rays);
-                });
-            };
-            const auto look_through = [&](std::uint32_t material) {
-                const auto own = std::ranges::find(subjects, material, &SubjectState::material);
-                return own == subjects.end()
-                           ? LookThrough()
-                           : make_look(bake, *own,
-                                       coarse_knobs(bake.effects, knobs, knobs.cubemap_size),
-                                       context);
-            };
-            return effect.make_light({bake, knobs, context, layouts, acts, crossing_rows,
-                                      answer_of_medium, look_through},
-                                     rays);
+        auto light = run_stage(request.log, name, name + ": scatterers", [&](std::uint64_t& rays) {
+            return with_light_inputs(request, acts, rays, [&](const LightInputs& inputs) {
+                return effect.make_light(inputs, rays);
+            });
         });
         if (light) return light;
     }
     return nullptr;
+}
+
+std::shared_ptr<const BounceLight> find_surface_light(const LightRequest& request) {
+    return run_stage(request.log, "surfaces that volumes see", "surface-volume: scatterers",
+                     [&](std::uint64_t& rays) {
+                         return with_light_inputs(
+                             request, {}, rays, [&](const LightInputs& inputs) {
+                                 return find_bounce_light(inputs, rays, Bounces::none);
+                             });
+                     });
 }
 
 }  // namespace opaline::bake

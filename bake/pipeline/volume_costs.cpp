@@ -23,6 +23,12 @@ PlanEntry* payer_of(std::span<PlanEntry> plan, std::uint32_t volume, std::string
     return found == plan.end() ? nullptr : &*found;
 }
 
+// Precondition: a volume sees surfaces.
+PlanEntry* payer_of_seen(const CostedVolumes& volumes, std::span<PlanEntry> plan) {
+    const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
+    return payer_of(plan, first->whole, kSurfacesToVolumes);
+}
+
 // Walks of a volume that gather light of volumes: they fly as the others do, and sum emission along
 // their flights: through half of the volume as a guess, three channels at twice the time of one.
 Work glow_work(const VolumeWork& work, const VolumeLayout& layout) {
@@ -88,12 +94,15 @@ CostedVolumes make_costed_volumes(const CostRequest& request) {
     return volumes;
 }
 
-void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, double row_count,
+void bill_surface_light(const CostRequest& request, const CostedVolumes& volumes,
+                        std::span<PlanEntry> volume_plan, Bill& bill) {
+    const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
+    bill.open("surfaces that volumes see");
+    bill.add(surface_light_work(input), payer_of_seen(volumes, volume_plan));
+}
+
+void bill_volumes(const CostRequest& request, const CostedVolumes& volumes,
                   std::span<PlanEntry> volume_plan, Bill& bill) {
-    for (PlanEntry& entry : volume_plan) {
-        entry.predicted_seconds = 0;
-        entry.predicted_bytes = 0;
-    }
     if (volumes.empty()) return;
     const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
     const auto for_each = [&](std::string_view name, auto&& visit) {
@@ -109,9 +118,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     });
     if (sees_surfaces(volumes.layouts)) {
         bill.open("surfaces that volumes see");
-        const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
-        bill.add(seen_surfaces_work(input, volumes.works, request.facts.receivers, row_count),
-                 payer_of(volume_plan, first->whole, kSurfacesToVolumes));
+        bill.add(seen_surfaces_work(input, volumes.works), payer_of_seen(volumes, volume_plan));
     }
     bill.open(scattering_stage(volumes.layouts));
     for (std::size_t i = 0; i < volumes.works.size(); ++i) {
@@ -146,14 +153,17 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
             volume_check_effort(volumes.works, volumes.layouts, request.knobs);
         bill.add({0, static_cast<double>(check.max_events) * kTracedCollision});
     }
-    if (request.facts.receivers > 0) {
-        bill.open("shadows of volumes");
-        bill.add(dimming_work(input, volumes.works, request.facts.receivers, row_count));
-        for (std::size_t i = 0; i < volumes.works.size(); ++i) {
-            const VolumeLayout& layout = volumes.layouts[i];
-            bill.add(sent_light_work(input, volumes.works[i], layout, request.facts.receivers),
-                     payer_of(volume_plan, layout.whole, kVolumesToSurfaces));
-        }
+}
+
+void bill_completion(const CostRequest& request, const CostedVolumes& volumes, double receivers,
+                     double rows, std::span<PlanEntry> volume_plan, Bill& bill) {
+    if (volumes.empty()) return;
+    const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
+    bill.add(dimming_work(input, volumes.works, receivers, rows));
+    for (std::size_t i = 0; i < volumes.works.size(); ++i) {
+        const VolumeLayout& layout = volumes.layouts[i];
+        bill.add(sent_light_work(input, volumes.works[i], layout, receivers),
+                 payer_of(volume_plan, layout.whole, kVolumesToSurfaces));
     }
 }
 

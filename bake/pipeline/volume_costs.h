@@ -28,10 +28,18 @@ struct CostedVolumes {
 };
 CostedVolumes make_costed_volumes(const CostRequest& request);
 
-/// The stages of add_volumes in order, without those of qualities that a target error tries first.
-/// `volume_plan`: as plan_volumes made it for the same knobs; its entries pay and get their
-/// predictions. Empty: all share the costs. `row_count`: rows of all vertices.
-void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, double row_count,
+/// Light of surfaces that volumes alone see (find_surface_light).
+void bill_surface_light(const CostRequest& request, const CostedVolumes& volumes,
+                        std::span<PlanEntry> volume_plan, Bill& bill);
+
+/// The stages of bake_and_measure in order, without those of qualities that a target error tries
+/// first. `volume_plan`: as plan_volumes made it for the same knobs; its entries pay and get their
+/// predictions. Empty: all share the costs.
+void bill_volumes(const CostRequest& request, const CostedVolumes& volumes,
                   std::span<PlanEntry> volume_plan, Bill& bill);
+
+/// What volumes add to the stage of `rows` of `receivers` (complete_rows.h).
+void bill_completion(const CostRequest& request, const CostedVolumes& volumes, double receivers,
+                     double rows, std::span<PlanEntry> volume_plan, Bill& bill);
 
 }  // namespace opaline::bake

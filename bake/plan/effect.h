@@ -61,7 +61,7 @@ struct EffectInputs {
     /// OtherLight::make_truth of light(); empty where there is none.
     OtherLight::TrueIrradiance true_light(std::span<const TestLight> lights) const {
         const OtherLight* const other = light();
-        return other != nullptr && other->make_truth ? other->make_truth(lights)
+        return other != nullptr && other->make_truth ? other->make_truth(lights, bake.between)
                                                      : OtherLight::TrueIrradiance();
     }
     /// BakeInputs::light, or null where there is none that reaches the material.
@@ -154,7 +154,8 @@ struct LightInputs {
         answer_of_medium{};
     /// Empty where no light crosses the medium straight.
     std::function<LookThrough(std::uint32_t material)> look_through{};
-    std::uint32_t rays_of_receiver = 0;  ///< to other surfaces, as the effect asks for
+    std::uint32_t rays_of_receiver = 0;     ///< to other surfaces, as the effect asks for
+    std::span<const Receiver> onlookers{};  ///< places that see surfaces, besides receivers
 };
 
 /// The interface of an effect. Plan, cost model, pilot, self-check, sweep, report and command line

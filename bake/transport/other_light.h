@@ -13,7 +13,9 @@
 
 namespace opaline::bake {
 
-struct TestLight;  // truth/test_lights.h
+struct BounceLight;   // exchange/bounce_light.h
+struct DensitySpace;  // transport/density/density_space.h
+struct TestLight;     // truth/test_lights.h
 
 /// Where light is asked for, outside of any boundary.
 struct LitPoint {
@@ -44,8 +46,10 @@ struct OtherLight {
     /// under each of the lights, the mean of `count` independent samples keyed by `key`.
     using TrueIrradiance = std::function<std::uint64_t(
         const Receiver& at, std::uint64_t key, std::uint32_t count, std::span<double> irradiance)>;
-    /// `lights` must outlive the result. Null: truths leave the light out.
-    std::function<TrueIrradiance(std::span<const TestLight> lights)> make_truth{};
+    /// `lights` and the volumes `between` (BakeInputs) must outlive the result. Null: truths leave
+    /// the light out.
+    std::function<TrueIrradiance(std::span<const TestLight> lights, const DensitySpace* between)>
+        make_truth{};
     /// Adds the radiance that views see per unit of each basis light, times their weights and
     /// factors: to `rows`, a row for each factor, `bands` planes each as of `add`. `solid_angle`
     /// [sr]: of what each view stands for. Returns the rays traced. Any thread. Empty: it is not
@@ -60,7 +64,8 @@ struct OtherLight {
         std::function<std::uint64_t(const Receiver& along, formats::Rgb weight, std::uint64_t key,
                                     std::uint32_t number, std::span<double> luminance)>;
     /// As make_truth; `along`: origin and direction of the view. Empty where `add_seen` is.
-    std::function<TrueView(std::span<const TestLight> lights)> make_seen_truth{};
+    std::function<TrueView(std::span<const TestLight> lights, const DensitySpace* between)>
+        make_seen_truth{};
     std::string_view name{};  ///< of what makes it, for reports
     /// 3, or 1 where the three coincide. With 3, rows of all receivers have three bands as well
     /// (RowLayout::coloured).
@@ -68,6 +73,7 @@ struct OtherLight {
     bool environment = true;  ///< that of the environment counts, too
     /// By material: 1 where it is not worth the rays. Empty: it is everywhere.
     std::vector<std::uint8_t> unreached{};
+    const BounceLight* surfaces = nullptr;  ///< that it comes from; null: from no surfaces
 
     /// Whether the environment counts; `light` null: nothing else does.
     static bool has_environment(const OtherLight* light) {

@@ -14,7 +14,7 @@ EffectDescriptor describe_scattered_often(Effect id);
 /// Light that volumes scatter to surfaces: part of the rows of vertices (sent_light.h).
 EffectDescriptor describe_sent_light(Effect id);
 
-/// Light that surfaces send to volumes: part of the rows of nodes (seen_surfaces.h).
+/// Light that surfaces send to volumes: part of the rows of nodes (exchange/seen_light.h).
 EffectDescriptor describe_seen_light(Effect id);
 
 }  // namespace opaline::bake

@@ -218,7 +218,7 @@ void compare(const World& w, const World& fine, std::uint32_t n) {
     std::uint64_t rays = 0;
     const Knobs knobs = resolve_knobs(options).value();
     const auto light = find_bounce_light(
-        {w.bake, knobs, w.context, w.layouts, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])},
+        {w.bake, knobs, w.context, w.layouts, {}, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])},
         rays);
     // Error, and of that what rays of other seeds share: errors of the look-up and of scatterers.
     constexpr std::uint64_t kSeeds = 8;

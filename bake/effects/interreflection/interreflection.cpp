@@ -108,8 +108,10 @@ std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t&
     auto light = std::make_unique<OtherLight>();
     light->bands = bounced->bands;
     light->name = "interreflection";
-    light->make_truth = [bounced](std::span<const TestLight> lights) {
-        const auto truth = std::make_shared<const BounceTruth>(make_bounce_truth(bounced, lights));
+    light->surfaces = bounced.get();  // which the functions below keep
+    light->make_truth = [bounced](std::span<const TestLight> lights, const DensitySpace* between) {
+        const auto truth =
+            std::make_shared<const BounceTruth>(make_bounce_truth(bounced, lights, between));
         return [truth](const Receiver& at, std::uint64_t key, std::uint32_t count,
                        std::span<double> irradiance) {
             return add_true_bounces(*truth, at, key, count, irradiance);
@@ -120,8 +122,10 @@ std::unique_ptr<OtherLight> make_light(const LightInputs& inputs, std::uint64_t&
                                 std::span<float> rows) {
         return add_seen_light(*bounced, views, solid_angle, cubemap_size, bands, rows);
     };
-    light->make_seen_truth = [bounced](std::span<const TestLight> lights) {
-        const auto truth = std::make_shared<const BounceTruth>(make_bounce_truth(bounced, lights));
+    light->make_seen_truth = [bounced](std::span<const TestLight> lights,
+                                       const DensitySpace* between) {
+        const auto truth =
+            std::make_shared<const BounceTruth>(make_bounce_truth(bounced, lights, between));
         return [truth](const Receiver& along, formats::Rgb weight, std::uint64_t key,
                        std::uint32_t number, std::span<double> luminance) {
             return add_true_view(*truth, along, weight, key, number, luminance);

@@ -38,7 +38,7 @@ struct LitWorld : tests::LitScene {
         std::uint64_t traced = 0;
         const Knobs knobs = resolve_knobs(options).value();
         light = find_bounce_light(
-            {bake, knobs, {}, rows, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])}, traced);
+            {bake, knobs, {}, rows, {}, {}, {}, {}, count_bounce_rays(knobs[kBounceRays])}, traced);
     }
 
     std::vector<RowLayout> rows = layouts();

@@ -56,9 +56,17 @@ struct BouncedIn : LitScene {
         const bake::BakeInputs known = inputs(filtered ? &textures : nullptr);
         const bake::Knobs knobs = bake::resolve_knobs(bounce_options({"direct"})).value();
         std::uint64_t traced = 0;
-        const auto bounced = bake::find_bounce_light(
-            {known, knobs, {}, rows, {}, {}, {}, bake::count_bounce_rays(knobs[bake::kBounceRays])},
-            traced);
+        const auto bounced =
+            bake::find_bounce_light({known,
+                                     knobs,
+                                     {},
+                                     rows,
+                                     {},
+                                     {},
+                                     {},
+                                     {},
+                                     bake::count_bounce_rays(knobs[bake::kBounceRays])},
+                                    traced);
         std::vector<float> even;  // a sky of radiance 1
         for (int face = 0; face < 6; ++face) {
             for (const double solid_angle : formats::texel_solid_angles(8)) {
