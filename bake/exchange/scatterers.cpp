@@ -19,6 +19,8 @@ namespace {
 // Receivers that look for scatterers, and their rays.
 constexpr std::size_t kProbes = 4096;
 constexpr std::uint32_t kRaysOfProbe = 16;
+// Scatterers besides, where onlookers look.
+constexpr std::size_t kSeenByOnlookers = 1024;
 
 struct Seen {
     AreaTable::Triangle triangle;
@@ -72,16 +74,67 @@ Scatterer make_scatterer(const LightInputs& inputs, const Seen& seen) {
     return made;
 }
 
+// Where rays of probes end, on sides that send light.
+std::vector<Seen> look_around(const LightInputs& inputs, std::span<const Receiver> probes,
+                              std::uint64_t& rays) {
+    struct Part {
+        std::vector<Seen> seen;
+        std::uint64_t rays = 0;
+    };
+    std::vector<Seen> all;
+    const BounceGrid grid = make_bounce_grid(kRaysOfProbe);
+    constexpr std::size_t kBlock = 64;
+    for_each_block_in_order(
+        probes.size(), kBlock, inputs.context,
+        [&](Range range) {
+            Part part;
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                part.rays += trace_bounces(
+                    inputs.bake.rays, probes[i], grid, inputs.knobs.seed,
+                    [&](const BounceHit& hit) {
+                        const PacketHits& hits = hit.hits;
+                        const std::size_t lane = hit.lane;
+                        const SeenSide side = side_of_hit(inputs.bake.scene, hits, lane);
+                        if (side.is_seen && sends_light(inputs.layouts[hits.material[lane]])) {
+                            const float u = hits.u[lane], v = hits.v[lane];
+                            part.seen.push_back(
+                                {{hits.primitive[lane], hits.first_index[lane]},
+                                 {1 - u - v, u, v},
+                                 {hit.origin + hits.distance[lane] * hit.direction,
+                                  {hits.material[lane], side.behind, side.normal}}});
+                        }
+                    });
+            }
+            return part;
+        },
+        [&](Range, Part&& part) {
+            all.insert(all.end(), part.seen.begin(), part.seen.end());
+            rays += part.rays;
+        });
+    return all;
+}
+
+void append_evenly(std::span<const Seen> all, std::size_t count, std::vector<Seen>& chosen) {
+    std::vector<SidePoint> points;
+    points.reserve(all.size());
+    for (const Seen& seen : all) {
+        points.push_back(seen.point);
+    }
+    for (const std::uint32_t i : choose_evenly(points, count)) {
+        chosen.push_back(all[i]);
+    }
+}
+
 // Over the part of the surface that each scatterer represents.
-void filter_albedo(const LightInputs& inputs, std::span<const Seen> all,
-                   std::span<const std::uint32_t> chosen, std::span<Scatterer> scatterers) {
+void filter_albedo(const LightInputs& inputs, std::span<const Seen> chosen,
+                   std::span<Scatterer> scatterers) {
     const formats::Scene& scene = inputs.bake.scene;
     const ScenePyramids& textures = *inputs.bake.textures;
     const std::vector<float> cells = BounceTree(scatterers, inputs.layouts.size(), 0).cells();
     for (std::size_t i = 0; i < chosen.size(); ++i) {
         Scatterer& made = scatterers[i];
         if (!has_pyramid(textures, scene.materials[made.material])) continue;
-        const Seen& seen = all[chosen[i]];
+        const Seen& seen = chosen[i];
         const auto& [primitive, first_index] = seen.triangle;
         const TextureView view{
             textures, moments_of_area(uv_gradient(scene.primitives[primitive], first_index),
@@ -118,55 +171,17 @@ double count_scatterer_rays(std::size_t receivers) {
 
 std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
                                        std::uint64_t& rays) {
-    std::vector<Receiver> probes = draw_probes(inputs.bake.scene, inputs.bake.receivers);
-    probes.insert(probes.end(), inputs.onlookers.begin(), inputs.onlookers.end());
-    struct Part {
-        std::vector<Seen> seen;
-        std::uint64_t rays = 0;
-    };
-    std::vector<Seen> all;
-    const BounceGrid grid = make_bounce_grid(kRaysOfProbe);
-    constexpr std::size_t kBlock = 64;
-    for_each_block_in_order(
-        probes.size(), kBlock, inputs.context,
-        [&](Range range) {
-            Part part;
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                part.rays += trace_bounces(
-                    inputs.bake.rays, probes[i], grid, inputs.knobs.seed,
-                    [&](const BounceHit& hit) {
-                        const PacketHits& hits = hit.hits;
-                        const std::size_t lane = hit.lane;
-                        const SeenSide side = side_of_hit(inputs.bake.scene, hits, lane);
-                        if (side.is_seen && sends_light(inputs.layouts[hits.material[lane]])) {
-                            const float u = hits.u[lane], v = hits.v[lane];
-                            part.seen.push_back(
-                                {{hits.primitive[lane], hits.first_index[lane]},
-                                 {1 - u - v, u, v},
-                                 {hit.origin + hits.distance[lane] * hit.direction,
-                                  {hits.material[lane], side.behind, side.normal}}});
-                        }
-                    });
-            }
-            return part;
-        },
-        [&](Range, Part&& part) {
-            all.insert(all.end(), part.seen.begin(), part.seen.end());
-            rays += part.rays;
-        });
-    std::vector<SidePoint> points;
-    points.reserve(all.size());
-    for (const Seen& seen : all) {
-        points.push_back(seen.point);
-    }
+    std::vector<Seen> chosen;
+    append_evenly(look_around(inputs, draw_probes(inputs.bake.scene, inputs.bake.receivers), rays),
+                  count, chosen);
+    append_evenly(look_around(inputs, inputs.onlookers, rays), kSeenByOnlookers, chosen);
     std::vector<Scatterer> scatterers;
-    scatterers.reserve(std::min(count, all.size()));
-    const std::vector<std::uint32_t> chosen = choose_evenly(points, count);
-    for (const std::uint32_t i : chosen) {
-        scatterers.push_back(make_scatterer(inputs, all[i]));
+    scatterers.reserve(chosen.size());
+    for (const Seen& seen : chosen) {
+        scatterers.push_back(make_scatterer(inputs, seen));
     }
     if (inputs.bake.textures != nullptr) {
-        filter_albedo(inputs, all, chosen, scatterers);
+        filter_albedo(inputs, chosen, scatterers);
     }
     return scatterers;
 }

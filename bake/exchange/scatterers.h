@@ -36,9 +36,9 @@ SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::s
 /// Rays that look for scatterers, of a scene with so many receivers.
 double count_scatterer_rays(std::size_t receivers);
 
-/// At most `count` scatterers where cosine-distributed rays of receivers and LightInputs::onlookers
-/// end: as dense as light from there is looked for. Only on materials whose rows are filled. None
-/// where receivers see nothing. Counts `rays`.
+/// At most `count` scatterers where cosine-distributed rays of receivers end, and 1024 where those
+/// of LightInputs::onlookers do: as dense as light from there is looked for. Only on materials
+/// whose rows are filled. None where receivers see nothing. Counts `rays`.
 std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
                                        std::uint64_t& rays);
 
