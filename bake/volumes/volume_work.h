@@ -57,7 +57,7 @@ Work attenuation_work(const CostInput& input, const VolumeWork& work);
 Work scattering_work(const CostInput& input, const VolumeWork& work);
 
 /// Optical depths of `receivers` vertices toward all texels through volumes of these, and their
-/// rows once more.
+/// rows to texels and back.
 Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
                   double rows);
 
