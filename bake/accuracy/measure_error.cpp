@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bake/accuracy/bootstrap.h"
+#include "bake/accuracy/sent_truth.h"
 #include "bake/accuracy/stored_luminance.h"
 #include "bake/accuracy/subject_truth.h"
 #include "bake/accuracy/surface_probes.h"
@@ -116,9 +118,10 @@ bool enters_everywhere(const SubjectTruth& truth) {
     return truth.parts.front().inputs.medium().eta >= 1;
 }
 
-EffectCheck check_subject(const SubjectTruth& truth, const SubjectState& subject,
-                          const formats::AssetView& asset, std::span<const CheckPoint> points,
-                          std::span<const TestLight> lights) {
+// `sent`: what volumes scatter to the subject; null: nothing.
+EffectCheck check_subject(const SubjectTruth& truth, const SentTruth* sent,
+                          const SubjectState& subject, const formats::AssetView& asset,
+                          std::span<const CheckPoint> points, std::span<const TestLight> lights) {
     EffectCheck check;
     check.effect = truth.name();
     check.reference = truth.reference();
@@ -134,11 +137,13 @@ EffectCheck check_subject(const SubjectTruth& truth, const SubjectState& subject
             }
             CheckedPoint found{point.primitive, {}, 0};
             if (point.material == subject.material && range.begin % step == 0) {
-                append_pairs(relight_point(asset, point, subject.layout, lights),
-                             eval_truth(truth,
-                                        {point.receiver, point.body, point.key, point.behind,
-                                         seen_inside(truth, point)},
-                                        found.rays),
+                const TruthReceiver at{point.receiver, point.body, point.key, point.behind,
+                                       seen_inside(truth, point)};
+                TwoEstimates expected = eval_truth(truth, at, found.rays);
+                if (sent != nullptr) {
+                    found.rays += add_sent_truth(*sent, at, lights, expected);
+                }
+                append_pairs(relight_point(asset, point, subject.layout, lights), expected,
                              found.pairs);
             }
             return found;
@@ -305,14 +310,21 @@ ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset
     turn_views(normals, seed, receivers);
     turn_views(normals, seed, between);
     std::vector<EffectCheck> checks;
+    BakeInputs dimmed = bake.inputs;
+    dimmed.between = bake.volumes != nullptr ? &bake.volumes->space : nullptr;
     for (const SubjectState& subject : bake.subjects) {
         const SubjectTruth truth =
-            make_subject_truth(bake.inputs, subject, bake.knobs, {}, bake.lights, context);
+            make_subject_truth(dimmed, subject, bake.knobs, {}, bake.lights, context);
         if (truth.parts.empty()) {
             continue;  // black: no error
         }
+        std::optional<SentTruth> sent;
+        if (bake.volumes != nullptr && bake.volumes->sent != nullptr) {
+            sent.emplace(make_sent_truth(bake, *bake.volumes->sent, subject, context));
+        }
         for (const auto* points : {&receivers, &between}) {
-            EffectCheck check = check_subject(truth, subject, asset, *points, bake.lights);
+            EffectCheck check =
+                check_subject(truth, sent ? &*sent : nullptr, subject, asset, *points, bake.lights);
             check.between = points == &between;
             traced += check.rays;
             checks.push_back(std::move(check));

@@ -10,6 +10,7 @@
 #include "bake/rows/subject_states.h"
 #include "bake/truth/draw_receivers.h"
 #include "bake/truth/luminance.h"
+#include "bake/volumes/complete_rows.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {
@@ -106,14 +107,16 @@ struct FinishedBake {
     const BakeInputs& inputs;
     std::span<const SubjectState> subjects;
     const Knobs& knobs;
-    std::span<const TestLight> lights;  ///< of the asset's cube map
+    std::span<const TestLight> lights;       ///< of the asset's cube map
+    const VolumesBefore* volumes = nullptr;  ///< that completed its rows; null: none
 };
 
 /// Compares the file with the truth, without base colour, at held-back receivers and at as many
 /// random points of the surface, where the file is interpolated as the runtime does: each subject's
 /// rows as a whole, under the lights as they are. Seen along the normal; where walks hold light of
-/// all orders, a quarter of the points so and the others from elsewhere (turn_views). `traced` adds
-/// up.
+/// all orders, a quarter of the points so and the others from elsewhere (turn_views). Volumes dim
+/// the truth's light on its way to the surface; what they scatter is that of the file's nodes, by
+/// other rays. `traced` adds up.
 ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset,
                        const Context& context, std::uint64_t& traced);
 

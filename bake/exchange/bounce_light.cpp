@@ -274,11 +274,12 @@ std::size_t count_scatterers(std::uint32_t rays_of_receiver) {
 
 std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, ExchangePoints points,
                                                   std::span<const MediumRows> media,
-                                                  std::uint64_t& rays) {
+                                                  std::uint64_t& rays, Bounces bounces) {
     const std::uint32_t count = inputs.rays_of_receiver;
     const std::span<const Scatterer> scatterers = points.scatterers;
     if (scatterers.empty()) return nullptr;
-    const bool is_coloured = std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
+    const bool is_coloured =
+        bounces == Bounces::none || std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
     ScattererLight own = light_scatterers(inputs, points, media, is_coloured ? 3 : 1, rays);
     const Field field{inputs, scatterers, own};
     auto light = std::make_shared<BounceLight>(
@@ -294,9 +295,16 @@ std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, Exc
                     .of_averaged = make_bounce_grid(kRaysOfAveraged),
                     .sites = {},
                     .site_rows = {}});
-    const std::vector<Arrivals> arrivals = weigh_scatterers(field, media, light->tree, rays);
-    light->report = add_bounces(field, arrivals, light->tree);
-    light_sites(inputs, *light, rays);
+    if (bounces == Bounces::all) {
+        const std::vector<Arrivals> arrivals = weigh_scatterers(field, media, light->tree, rays);
+        light->report = add_bounces(field, arrivals, light->tree);
+        light_sites(inputs, *light, rays);
+        return light;
+    }
+    if (own.crossing.count() > 0) {
+        weigh_scatterers(field, media, light->tree, rays);  // adds what crosses media to `emitted`
+    }
+    light->tree.set_rows(own.emitted, inputs.context);
     return light;
 }
 

@@ -47,11 +47,15 @@ struct BounceLight {
     }
 };
 
+enum class Bounces : std::uint8_t { none, all };
+
 /// Finds the light of scatterers; null where there are none. `media`: rows of
-/// ExchangePoints::media, in that order. `rays` counts up.
+/// ExchangePoints::media, in that order. Without bounces it is what they make of the sky's light,
+/// in three bands, and knows no sites. `rays` counts up.
 std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, ExchangePoints points,
                                                   std::span<const MediumRows> media,
-                                                  std::uint64_t& rays);
+                                                  std::uint64_t& rays,
+                                                  Bounces bounces = Bounces::all);
 
 /// What answers a view.
 struct SeenNode {

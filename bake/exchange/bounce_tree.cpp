@@ -171,24 +171,28 @@ float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::ui
     return nodes_[self].cell = area;
 }
 
-std::vector<float> BounceTree::cells() const {
-    const auto is_leaf = [](const Node& node) { return node.right == 0; };
-    std::vector<float> cells(static_cast<std::size_t>(std::ranges::count_if(nodes_, is_leaf)));
-    for (std::size_t v = 0; v < nodes_.size(); ++v) {
-        if (is_leaf(nodes_[v])) {
-            cells[extents_[v].scatterer] = nodes_[v].cell;
+std::vector<std::uint32_t> BounceTree::leaves() const {
+    std::vector<std::uint32_t> leaves;
+    for (std::uint32_t v = 0; v < nodes_.size(); ++v) {
+        if (nodes_[v].right == 0) {
+            leaves.push_back(v);
         }
+    }
+    return leaves;
+}
+
+std::vector<float> BounceTree::cells() const {
+    const std::vector<std::uint32_t> own = leaves();
+    std::vector<float> cells(own.size());
+    for (const std::uint32_t v : own) {
+        cells[extents_[v].scatterer] = nodes_[v].cell;
     }
     return cells;
 }
 
 std::vector<std::uint32_t> BounceTree::neighbours() const {
-    std::vector<std::uint32_t> order;
-    for (std::size_t v = 0; v < nodes_.size(); ++v) {
-        if (nodes_[v].right == 0) {
-            order.push_back(extents_[v].scatterer);
-        }
-    }
+    std::vector<std::uint32_t> order = leaves();
+    std::ranges::for_each(order, [&](std::uint32_t& v) { v = extents_[v].scatterer; });
     return order;
 }
 

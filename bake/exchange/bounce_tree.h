@@ -79,6 +79,9 @@ class BounceTree {
     std::vector<float> cells() const;
     /// Of a node that find() returns for a footprint of 0.
     std::uint32_t scatterer_of(std::uint32_t node) const { return extents_[node].scatterer; }
+    /// Nodes of one scatterer each, and where it is [m].
+    std::vector<std::uint32_t> leaves() const;
+    glm::vec3 centre(std::uint32_t node) const { return nodes_[node].centre; }
     /// All scatterers, such that neighbours in space are mostly neighbours in the list.
     std::vector<std::uint32_t> neighbours() const;
     /// Of a scatterer's node, of its openness; of others between those of the ends.

@@ -71,7 +71,7 @@ std::optional<BounceTruth> true_light_of(const EffectInputs& inputs,
                                          std::span<const TestLight> lights) {
     const OtherLight* const light = light_of(inputs);
     if (light == nullptr || !light->surfaces) return std::nullopt;
-    return make_bounce_truth(light->surfaces, lights);
+    return make_bounce_truth(light->surfaces, lights, inputs.bake.between);
 }
 
 std::uint64_t add_true_other_light(const std::optional<BounceTruth>& light,

@@ -190,13 +190,13 @@ ScattererLight light_scatterers(const LightInputs& inputs, ExchangePoints& point
                                 std::span<const MediumRows> media, std::uint32_t bands,
                                 std::uint64_t& rays) {
     const std::size_t count = points.scatterers.size();
-    LitScatterers field{inputs,
-                        points.scatterers,
-                        media,
-                        {bands, CodedRows(count, bands * kRowTexels),
-                         std::vector<BandColour>(count), std::vector<BandColour>(count),
-                         std::vector<float>(count), std::move(points.media),
-                         CodedRows(0, bands * kRowTexels)}};
+    LitScatterers field{
+        inputs,
+        points.scatterers,
+        media,
+        {bands, CodedRows(count, bands * kRowTexels), std::vector<BandColour>(count),
+         std::vector<BandColour>(count), std::vector<float>(count), std::move(points.media),
+         CodedRows(0, bands * kRowTexels)}};
     rays += light_all(field);
     return std::move(field.light);
 }

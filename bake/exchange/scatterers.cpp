@@ -19,6 +19,8 @@ namespace {
 // Receivers that look for scatterers, and their rays.
 constexpr std::size_t kProbes = 4096;
 constexpr std::uint32_t kRaysOfProbe = 16;
+// Scatterers besides, where onlookers look.
+constexpr std::size_t kSeenByOnlookers = 1024;
 
 struct Seen {
     AreaTable::Triangle triangle;
@@ -72,47 +74,9 @@ Scatterer make_scatterer(const LightInputs& inputs, const Seen& seen) {
     return made;
 }
 
-// Over the part of the surface that each scatterer represents.
-void filter_albedo(const LightInputs& inputs, std::span<const Seen> all,
-                   std::span<const std::uint32_t> chosen, std::span<Scatterer> scatterers) {
-    const formats::Scene& scene = inputs.bake.scene;
-    const ScenePyramids& textures = *inputs.bake.textures;
-    const std::vector<float> cells = BounceTree(scatterers, inputs.layouts.size(), 0).cells();
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        Scatterer& made = scatterers[i];
-        if (!has_pyramid(textures, scene.materials[made.material])) continue;
-        const Seen& seen = all[chosen[i]];
-        const auto& [primitive, first_index] = seen.triangle;
-        const TextureView view{
-            textures, moments_of_area(uv_gradient(scene.primitives[primitive], first_index),
-                                      static_cast<double>(cells[i]))};
-        made.albedo =
-            eval_surface_albedo(scene, inputs.layouts[made.material],
-                                make_surface_point(scene, seen.triangle, seen.barycentric), &view);
-    }
-}
-
-}  // namespace
-
-SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane) {
-    SeenSide side;
-    const glm::vec3 normal{hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]};
-    const formats::Material& material = scene.materials[hits.material[lane]];
-    side.behind = hits.cosine[lane] > 0;
-    side.is_seen = hits.hit[lane] != 0 && normal != glm::vec3(0) &&
-                   (!side.behind || material.sheet || (material.double_sided && !material.medium));
-    side.normal = side.behind ? -normal : normal;
-    side.cosine = std::abs(hits.cosine[lane]);
-    return side;
-}
-
-double count_scatterer_rays(std::size_t receivers) {
-    return static_cast<double>(kRaysOfProbe * std::min(receivers, kProbes));
-}
-
-std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
-                                       std::uint64_t& rays) {
-    const std::vector<Receiver> probes = draw_probes(inputs.bake.scene, inputs.bake.receivers);
+// Where rays of probes end, on sides that send light.
+std::vector<Seen> look_around(const LightInputs& inputs, std::span<const Receiver> probes,
+                              std::uint64_t& rays) {
     struct Part {
         std::vector<Seen> seen;
         std::uint64_t rays = 0;
@@ -147,19 +111,77 @@ std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t co
             all.insert(all.end(), part.seen.begin(), part.seen.end());
             rays += part.rays;
         });
+    return all;
+}
+
+void append_evenly(std::span<const Seen> all, std::size_t count, std::vector<Seen>& chosen) {
     std::vector<SidePoint> points;
     points.reserve(all.size());
     for (const Seen& seen : all) {
         points.push_back(seen.point);
     }
+    for (const std::uint32_t i : choose_evenly(points, count)) {
+        chosen.push_back(all[i]);
+    }
+}
+
+// Over the part of the surface that each scatterer represents.
+void filter_albedo(const LightInputs& inputs, std::span<const Seen> chosen,
+                   std::span<Scatterer> scatterers) {
+    const formats::Scene& scene = inputs.bake.scene;
+    const ScenePyramids& textures = *inputs.bake.textures;
+    const std::vector<float> cells = BounceTree(scatterers, inputs.layouts.size(), 0).cells();
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+        Scatterer& made = scatterers[i];
+        if (!has_pyramid(textures, scene.materials[made.material])) continue;
+        const Seen& seen = chosen[i];
+        const auto& [primitive, first_index] = seen.triangle;
+        const TextureView view{
+            textures, moments_of_area(uv_gradient(scene.primitives[primitive], first_index),
+                                      static_cast<double>(cells[i]))};
+        made.albedo =
+            eval_surface_albedo(scene, inputs.layouts[made.material],
+                                make_surface_point(scene, seen.triangle, seen.barycentric), &view);
+    }
+}
+
+}  // namespace
+
+SeenSide side_of(const formats::Material& material, glm::vec3 normal, float cosine) {
+    SeenSide side;
+    side.behind = cosine > 0;
+    side.is_seen = normal != glm::vec3(0) &&
+                   (!side.behind || material.sheet || (material.double_sided && !material.medium));
+    side.normal = side.behind ? -normal : normal;
+    side.cosine = std::abs(cosine);
+    return side;
+}
+
+SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane) {
+    SeenSide side =
+        side_of(scene.materials[hits.material[lane]],
+                {hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]}, hits.cosine[lane]);
+    side.is_seen = side.is_seen && hits.hit[lane] != 0;
+    return side;
+}
+
+double count_scatterer_rays(std::size_t receivers) {
+    return static_cast<double>(kRaysOfProbe * std::min(receivers, kProbes));
+}
+
+std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
+                                       std::uint64_t& rays) {
+    std::vector<Seen> chosen;
+    append_evenly(look_around(inputs, draw_probes(inputs.bake.scene, inputs.bake.receivers), rays),
+                  count, chosen);
+    append_evenly(look_around(inputs, inputs.onlookers, rays), kSeenByOnlookers, chosen);
     std::vector<Scatterer> scatterers;
-    scatterers.reserve(std::min(count, all.size()));
-    const std::vector<std::uint32_t> chosen = choose_evenly(points, count);
-    for (const std::uint32_t i : chosen) {
-        scatterers.push_back(make_scatterer(inputs, all[i]));
+    scatterers.reserve(chosen.size());
+    for (const Seen& seen : chosen) {
+        scatterers.push_back(make_scatterer(inputs, seen));
     }
     if (inputs.bake.textures != nullptr) {
-        filter_albedo(inputs, all, chosen, scatterers);
+        filter_albedo(inputs, chosen, scatterers);
     }
     return scatterers;
 }

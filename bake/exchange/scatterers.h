@@ -29,14 +29,16 @@ struct SeenSide {
     glm::vec3 normal{0};  ///< of the facet, toward the ray
     float cosine = 0;     ///< of the ray with it, > 0
 };
+/// `normal`: of the facet as it is wound, zero where it has none; `cosine` of the ray with it.
+SeenSide side_of(const formats::Material& material, glm::vec3 normal, float cosine);
 SeenSide side_of_hit(const formats::Scene& scene, const PacketHits& hits, std::size_t lane);
 
 /// Rays that look for scatterers, of a scene with so many receivers.
 double count_scatterer_rays(std::size_t receivers);
 
-/// At most `count` scatterers where cosine-distributed rays of receivers end: as dense as light
-/// from there is looked for. Only on materials whose rows are filled. None where receivers see
-/// nothing. Counts `rays`.
+/// At most `count` scatterers where cosine-distributed rays of receivers end, and 1024 where those
+/// of LightInputs::onlookers do: as dense as light from there is looked for. Only on materials
+/// whose rows are filled. None where receivers see nothing. Counts `rays`.
 std::vector<Scatterer> find_scatterers(const LightInputs& inputs, std::size_t count,
                                        std::uint64_t& rays);
 

@@ -194,10 +194,10 @@ class TruePath {
 }  // namespace
 
 BounceTruth make_bounce_truth(std::shared_ptr<const BounceLight> light,
-                              std::span<const TestLight> lights) {
+                              std::span<const TestLight> lights, const DensitySpace* between) {
     BounceTruth truth;
-    truth.suns = make_sun_rays(lights, 4);
-    truth.smooth = make_smooth_lights(lights);
+    truth.suns = make_sun_rays(lights, 4, between);
+    truth.smooth = make_smooth_lights(lights, between);
     std::vector<TestLight> coarse(lights.begin(), lights.end());
     project_test_lights(coarse, light->cubemap_size);
     for (TestLight& own : coarse) {

@@ -12,7 +12,8 @@ namespace opaline::bake {
 
 /// Light from other surfaces by tracing paths from surface to surface, each with its own light of
 /// the environment: no scatterers, footprints or cube map where paths meet opaque and thin-walled
-/// surfaces. What leaves a medium is that of the nearest scatterer, in which a path ends.
+/// surfaces. What leaves a medium is that of the nearest scatterer, in which a path ends. Volumes
+/// `between` dim the light of the environment on its way to the first surface.
 struct BounceTruth {
     std::shared_ptr<const BounceLight> light;
     SunRays suns;
@@ -20,7 +21,8 @@ struct BounceTruth {
     std::vector<std::vector<float>> coarse;  ///< the lights at the cube map of `light`
 };
 BounceTruth make_bounce_truth(std::shared_ptr<const BounceLight> light,
-                              std::span<const TestLight> lights);
+                              std::span<const TestLight> lights,
+                              const DensitySpace* between = nullptr);
 
 /// Adds the luminance of the irradiance under each light, the mean of `count` paths. Unbiased. The
 /// random numbers are keyed by `key`. Returns the rays.

@@ -122,13 +122,16 @@ void bill_step(const CostedBake& bake, Step step, Bill& bill) {
 }
 
 // As find_shared_light runs: rows of media at coarse knobs, and what the effect does itself.
-void bill_shared_light(const CostedBake& bake, Bill& bill) {
+// Returns whether an effect does.
+bool bill_shared_light(const CostedBake& bake, Bill& bill) {
+    bool is_made = false;
     const CostRequest& request = bake.request;
     const auto& effects = request.effects.effects;
     for (std::size_t e = 0; e < effects.size(); ++e) {
         const auto concerned = std::ranges::find_if(
             bake.subjects, [&](const CostedSubject& subject) { return subject.acts[e]; });
         if (effects[e].light_work == nullptr || concerned == bake.subjects.end()) continue;
+        is_made = true;
         PlanEntry* const payer = bake.payer(*concerned, e);
         const LightWork light = effects[e].light_work(bake.input);
         const std::string name(effects[e].name);
@@ -144,6 +147,7 @@ void bill_shared_light(const CostedBake& bake, Bill& bill) {
             }
         }
     }
+    return is_made;
 }
 
 // What the plan makes of the scene.
@@ -167,7 +171,7 @@ MemoryCounts count_planned_memory(const CostedBake& bake) {
     return counts;
 }
 
-void bill_row_stages(const CostedBake& bake, Bill& bill) {
+void bill_row_stages(const CostedBake& bake, const CostedVolumes& volumes, Bill& bill) {
     for (const formats::Primitive& p : bake.request.scene.primitives) {
         const auto subject = std::ranges::find(bake.subjects, p.material, &CostedSubject::material);
         const auto own = std::span(bake.subjects)
@@ -178,6 +182,8 @@ void bill_row_stages(const CostedBake& bake, Bill& bill) {
             const auto receivers = static_cast<double>(p.position.size());
             bill_rows(bake, *subject, receivers, bill);
             bill_encoding(bake, *subject, receivers, bill);
+            bill_completion(bake.request, volumes, receivers,
+                            receivers * subject->layout.terms() * subject->layout.bands(), bill);
         }
     }
 }
@@ -203,15 +209,6 @@ void bill_openness(const CostedBake& bake, Bill& bill) {
     }
 }
 
-double count_rows(const CostedBake& bake) {
-    double rows = 0;
-    for (const CostedSubject& subject : bake.subjects) {
-        rows += bake.request.facts.material[subject.material].receivers * subject.layout.terms() *
-                subject.layout.bands();
-    }
-    return rows;
-}
-
 }  // namespace
 
 std::uint64_t row_bytes(const Knobs& knobs, bool translucent, std::uint64_t bands) {
@@ -231,20 +228,23 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bake.traces_rays = bake.traces_rays || (!volumes.empty() && request.facts.triangles > 0);
     bill_placing(bake, is_on(plan, Subject::Kind::emitter), bill);
     bill_step(bake, Step::study, bill);
-    bill_shared_light(bake, bill);
+    if (!bill_shared_light(bake, bill) && sees_surfaces(volumes.layouts)) {
+        bill_surface_light(request, volumes, bill);
+    }
     if (request.knobs.error_target > 0) {
         bill_pilot_truth(bake, bill);
         bill_fixed_trials(bake, bill);
         bill_step(bake, Step::samples, bill);
         bill_other_trials(bake, bill);
+        bill_volumes(request, volumes, bill);
     } else {
+        bill_volumes(request, volumes, bill);
         bill_step(bake, Step::samples, bill);
     }
     bill_step(bake, Step::prepare, bill);
-    bill_row_stages(bake, bill);
+    bill_row_stages(bake, volumes, bill);
     bill_openness(bake, bill);
     bill_self_check(bake, bill);
-    bill_volumes(request, volumes, count_rows(bake), bill);
     bill_layers(request, bill);
     bill_lamps(bake, plan, bill);
     bill.add_bytes(mesh_bytes(request.scene, request.facts));

@@ -28,6 +28,8 @@
 #include "bake/transport/bake_openness.h"
 #include "bake/transport/hidden_receivers.h"
 #include "bake/transport/touching_triangles.h"
+#include "bake/volumes/place_nodes.h"
+#include "bake/volumes/plan_volumes.h"
 #include "bake/volumes/volume_effects.h"
 
 namespace opaline::bake {
@@ -52,7 +54,7 @@ std::string group_of(std::span<const Gatherer> gatherers) {
 }
 
 // The rows of all receivers, in their order; one stage of the report for each set.
-formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
+formats::Result<GatheredRows> bake_rows(const BakeInputs& bake, const VolumesBefore* volumes,
                                         std::span<const SubjectState> subjects, const Knobs& knobs,
                                         const Context& context, const BakeExtras& extras,
                                         StageLog& log) {
@@ -70,6 +72,8 @@ formats::Result<GatheredRows> bake_rows(const BakeInputs& bake,
         std::string group = group_of(gatherers);
         RowJob job{set, subject->layout, sink.encoder, total};
         job.measures_errors = extras.receiver_errors;
+        job.volumes = volumes;
+        job.material = &bake.scene.materials[set.material];
         GatheredRows gathered =
             run_stage(log, "rows of '" + bake.scene.primitives[set.primitive].name + "'",
                       std::move(group), [&](std::uint64_t& rays) {
@@ -149,6 +153,29 @@ void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjec
     }
 }
 
+// Light of surfaces, for surfaces and for volumes.
+struct SurfaceLight {
+    std::optional<OtherLight> shared;           // what they send to each other
+    std::shared_ptr<const BounceLight> lonely;  // where they do not, but volumes see them
+
+    const BounceLight* seen() const { return shared ? shared->surfaces.get() : lonely.get(); }
+};
+
+SurfaceLight find_light_of_surfaces(const BakeInputs& unlit, const Knobs& knobs,
+                                    std::span<const VolumeLayout> volumes, const Context& context,
+                                    std::vector<SubjectState>& subjects, StageLog& log) {
+    const bool is_seen = !unlit.scene.primitives.empty() && sees_surfaces(volumes);
+    const std::vector<Receiver> onlookers =
+        is_seen ? draw_onlookers(unlit.scene, volumes) : std::vector<Receiver>();
+    const std::vector<RowLayout> layouts = layouts_of(unlit.scene, subjects);
+    const LightRequest request{unlit, knobs, context, layouts, subjects, onlookers, log};
+    SurfaceLight light{find_shared_light(request), nullptr};
+    if (is_seen && light.seen() == nullptr) {
+        light.lonely = find_surface_light(request);
+    }
+    return light;
+}
+
 // What an inspected scene becomes: all stages from the receivers on. `subjects`: left studied.
 formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
                                const BakeExtras& extras, std::vector<SubjectState>& subjects,
@@ -171,20 +198,43 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     settle_subjects(unlit, result.plan, knobs, subjects);
     knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
-    const std::optional<OtherLight> light =
-        find_shared_light(unlit, knobs, context, layouts_of(unlit.scene, subjects), subjects, log);
+    const std::vector<VolumeLayout> planned = plan_volumes(unlit.scene, knobs).layouts;
+    const SurfaceLight light =
+        find_light_of_surfaces(unlit, knobs, planned, context, subjects, log);
     BakeInputs bake = unlit;
-    bake.light = light ? &*light : nullptr;
+    bake.light = light.shared ? &*light.shared : nullptr;
+    const VolumeStages stages{bake.effects, bake.scene, bake.rays, light.seen()};
+    std::optional<formats::Result<BakedVolumes>> volumes;
+    if (!subjects.empty() && colours_surfaces(bake.scene, planned)) {
+        std::ranges::for_each(subjects, [](SubjectState& s) { s.layout.coloured = true; });
+    }
+    if (!planned.empty() &&
+        knobs.error_target <= 0) {  // samples come when their memory is free again
+        volumes.emplace(bake_and_measure(stages, knobs, context, log));
+        if (!*volumes) return std::move(*volumes).error();
+    }
     if (knobs.error_target > 0) {
         result.accuracy.emplace();
         knobs = choose_knobs(bake, knobs, context, {subjects, lights, log, *result.accuracy});
         amend_plan(bake, subjects, knobs, context, result.plan);
+        if (!planned.empty()) {
+            volumes.emplace(bake_and_measure(stages, knobs, context, log));
+            if (!*volumes) return std::move(*volumes).error();
+            keep_knobs(bake.effects, **volumes, knobs);
+        }
     } else {
         run_step(Step::samples, bake, knobs, context, subjects, log);
     }
+    const bool is_before = volumes && count_receivers(bake.receivers) > 0;
+    const std::optional<SentLight> sent =
+        is_before ? find_sent_light(stages, **volumes, knobs) : std::nullopt;
+    const std::optional<VolumesBefore> before =
+        is_before ? std::optional(make_volumes_before(bake.scene, knobs, sent ? &*sent : nullptr))
+                  : std::nullopt;
     run_step(Step::prepare, bake, knobs, context, subjects, log);
     if (context.cancelled()) return interrupted();
-    formats::Result<GatheredRows> rows = bake_rows(bake, subjects, knobs, context, extras, log);
+    formats::Result<GatheredRows> rows =
+        bake_rows(bake, before ? &*before : nullptr, subjects, knobs, context, extras, log);
     if (!rows) return std::move(rows).error();
     warn_of_models(bake, subjects, knobs, context, result.warnings);
     std::vector<formats::Openness> openness = bake_all_openness(bake, subjects, context, log);
@@ -193,7 +243,8 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
                               std::move(openness));
     result.receiver_errors = std::move(rows->receiver_error);
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
-        return check_file({bake, subjects, knobs, lights}, result.asset.view(), context, traced);
+        return check_file({bake, subjects, knobs, lights, before ? &*before : nullptr},
+                          result.asset.view(), context, traced);
     });
     if (context.cancelled()) return interrupted();
     for (const std::string_view name : unmeasured_effects(bake.effects, result.plan)) {
@@ -208,6 +259,12 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
         result.accuracy->met = result.accuracy->met && meets_target(result.error, knobs);
     }
     std::ranges::for_each(subjects, forget_samples);
+    if (volumes) {
+        add_volumes(bake.scene, std::move(**volumes), result);
+        if (result.accuracy) {
+            result.accuracy->met = result.accuracy->met && meets_target(result.error, result.knobs);
+        }
+    }
     return formats::ok_status();
 }
 
@@ -284,17 +341,6 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     std::vector<SubjectState> subjects;
     if (auto status = bake_inspected(bake, context, extras, subjects, result); !status) {
         return std::move(status).error();
-    }
-    if (!plan.volumes.empty()) {
-        const std::vector<RowLayout> layouts = layouts_of(bake.scene, subjects);
-        if (auto status = add_volumes({effects, scene, rays, receivers, layouts}, context, result);
-            !status) {
-            return std::move(status).error();
-        }
-        warn_of_volumes(result.knobs, result.volume_error, result.warnings);
-        if (result.accuracy) {
-            result.accuracy->met = result.accuracy->met && meets_target(result.error, result.knobs);
-        }
     }
     if (!plan.layers.empty()) {
         if (auto status = add_layers(scene, plan.layers, context, result); !status) {

@@ -71,12 +71,7 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
         counts.volume_bytes += volume_memory(work, knobs);
     }
     if (sees_surfaces(layouts)) {
-        double sides = 0;
-        for (const formats::Primitive& primitive : scene.primitives) {
-            sides += static_cast<double>(primitive.position.size()) *
-                     (scene.materials[primitive.material].sheet ? 2 : 1);
-        }
-        counts.volume_bytes += seen_surfaces_memory(works, knobs, sides);
+        counts.volume_bytes += seen_surfaces_memory(works, knobs);
     }
     for (const formats::CloudLayer& layer : scene.layers) {
         counts.layer_bytes += layer_memory(layer, knobs);

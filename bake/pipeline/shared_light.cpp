@@ -8,27 +8,42 @@
 #include "bake/rows/medium_rows.h"
 
 namespace opaline::bake {
+namespace {
 
-std::optional<OtherLight> find_shared_light(const BakeInputs& bake, const Knobs& knobs,
-                                            const Context& context,
-                                            std::span<const RowLayout> layouts,
-                                            std::vector<SubjectState>& subjects, StageLog& log) {
-    for (std::size_t e = 0; e < bake.effects.effects.size(); ++e) {
-        const EffectDescriptor& effect = bake.effects.effects[e];
-        LightInputs inputs{bake, knobs, context, layouts,
-                           std::vector<std::uint8_t>(layouts.size())};
-        for (const SubjectState& subject : subjects) {
+LightInputs inputs_for(const LightRequest& request) {
+    return {.bake = request.bake,
+            .knobs = request.knobs,
+            .context = request.context,
+            .layouts = request.layouts,
+            .acts = std::vector<std::uint8_t>(request.layouts.size()),
+            .onlookers = request.onlookers};
+}
+
+std::shared_ptr<const BounceLight> solve(const LightRequest& request, const LightInputs& inputs,
+                                         Bounces bounces, std::uint64_t& rays) {
+    ExchangePoints points = place_exchange(inputs, rays);
+    const auto media =
+        ask_media(request.bake, request.knobs, request.context, points, request.subjects, rays);
+    return solve_exchange(inputs, std::move(points), media, rays, bounces);
+}
+
+}  // namespace
+
+std::optional<OtherLight> find_shared_light(const LightRequest& request) {
+    const auto& effects = request.bake.effects.effects;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        const EffectDescriptor& effect = effects[e];
+        LightInputs inputs = inputs_for(request);
+        for (const SubjectState& subject : request.subjects) {
             inputs.acts[subject.material] = subject.effects[e].acts ? 1 : 0;
         }
         if (effect.exchange_rays == nullptr || std::ranges::count(inputs.acts, 1) == 0) continue;
-        inputs.rays_of_receiver = effect.exchange_rays(knobs);
+        inputs.rays_of_receiver = effect.exchange_rays(request.knobs);
         const std::string name(effect.name);
         OtherLight light{.name = effect.name};
-        light.surfaces = run_stage(log, name, name + ": scatterers", [&](std::uint64_t& rays) {
-            ExchangePoints points = place_exchange(inputs, rays);
-            const auto media = ask_media(bake, knobs, context, points, subjects, rays);
-            return solve_exchange(inputs, std::move(points), media, rays);
-        });
+        light.surfaces = run_stage(
+            request.log, name, name + ": scatterers",
+            [&](std::uint64_t& rays) { return solve(request, inputs, Bounces::all, rays); });
         if (!light.surfaces) continue;
         light.bands = light.surfaces->bands;
         for (const std::uint8_t acts : inputs.acts) {
@@ -37,6 +52,13 @@ std::optional<OtherLight> find_shared_light(const BakeInputs& bake, const Knobs&
         return light;
     }
     return std::nullopt;
+}
+
+std::shared_ptr<const BounceLight> find_surface_light(const LightRequest& request) {
+    return run_stage(request.log, "surfaces that volumes see", "surface-volume: scatterers",
+                     [&](std::uint64_t& rays) {
+                         return solve(request, inputs_for(request), Bounces::none, rays);
+                     });
 }
 
 }  // namespace opaline::bake

@@ -10,12 +10,23 @@
 
 namespace opaline::bake {
 
-/// Light that surfaces send to each other, or none if no acting effect has it do so. `bake`:
-/// without it. `layouts`: by material, with their tints. The subjects have been studied; they are
-/// left without samples.
-std::optional<OtherLight> find_shared_light(const BakeInputs& bake, const Knobs& knobs,
-                                            const Context& context,
-                                            std::span<const RowLayout> layouts,
-                                            std::vector<SubjectState>& subjects, StageLog& log);
+/// What light of surfaces is found from. The subjects have been studied; they are left without
+/// samples.
+struct LightRequest {
+    const BakeInputs& bake;  ///< without BakeInputs::light
+    const Knobs& knobs;
+    const Context& context;
+    std::span<const RowLayout> layouts;  ///< by material, with their tints
+    std::vector<SubjectState>& subjects;
+    std::span<const Receiver> onlookers;  ///< LightInputs::onlookers
+    StageLog& log;
+};
+
+/// Light that surfaces send to each other, or none if no acting effect has it do so.
+std::optional<OtherLight> find_shared_light(const LightRequest& request);
+
+/// What surfaces make of the sky's light, where they send none to each other; null where nobody
+/// sees one.
+std::shared_ptr<const BounceLight> find_surface_light(const LightRequest& request);
 
 }  // namespace opaline::bake

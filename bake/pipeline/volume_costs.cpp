@@ -14,6 +14,12 @@
 namespace opaline::bake {
 namespace {
 
+// Precondition: a volume sees surfaces.
+PlanEntry* payer_of_seen(const CostedVolumes& volumes, Bill& bill) {
+    const auto first = std::ranges::find(volumes.layouts, true, &VolumeLayout::sees_surfaces);
+    return bill.payer(Subject::Kind::volume, first->whole, kSurfacesToVolumes);
+}
+
 // Walks of a volume that gather light of volumes: they fly as the others do, and sum emission along
 // their flights: through half of the volume as a guess, three channels at twice the time of one.
 Work glow_work(const VolumeWork& work, const VolumeLayout& layout) {
@@ -79,8 +85,13 @@ CostedVolumes make_costed_volumes(const CostRequest& request) {
     return volumes;
 }
 
-void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, double row_count,
-                  Bill& bill) {
+void bill_surface_light(const CostRequest& request, const CostedVolumes& volumes, Bill& bill) {
+    const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
+    bill.open("surfaces that volumes see");
+    bill.add(surface_light_work(input), payer_of_seen(volumes, bill));
+}
+
+void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, Bill& bill) {
     if (volumes.empty()) return;
     const auto& [layouts, works] = volumes;
     const Knobs& knobs = request.knobs;
@@ -99,9 +110,7 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
     }
     if (sees_surfaces(layouts)) {
         bill.open("surfaces that volumes see");
-        const auto first = std::ranges::find(layouts, true, &VolumeLayout::sees_surfaces);
-        bill.add(seen_surfaces_work(input, works, receivers, row_count),
-                 payer(static_cast<std::size_t>(first - layouts.begin()), kSurfacesToVolumes));
+        bill.add(seen_surfaces_work(input, works), payer_of_seen(volumes, bill));
     }
     bill.open(scattering_stage(layouts));
     for (std::size_t i = 0; i < works.size(); ++i) {
@@ -127,13 +136,17 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, doub
         bill.open("self-check of light of volumes");
         bill.add({0, check_seconds});
     }
-    if (receivers > 0) {
-        bill.open("shadows of volumes");
-        bill.add(dimming_work(input, works, receivers, row_count));
-        for (std::size_t i = 0; i < works.size(); ++i) {
-            bill.add(sent_light_work(input, works[i], layouts[i], receivers),
-                     payer(i, kVolumesToSurfaces));
-        }
+}
+
+void bill_completion(const CostRequest& request, const CostedVolumes& volumes, double receivers,
+                     double rows, Bill& bill) {
+    if (volumes.empty()) return;
+    const CostInput input{request.knobs, request.facts.triangles, request.facts.receivers};
+    bill.add(dimming_work(input, volumes.works, receivers, rows));
+    for (std::size_t i = 0; i < volumes.works.size(); ++i) {
+        const VolumeLayout& layout = volumes.layouts[i];
+        bill.add(sent_light_work(input, volumes.works[i], layout, receivers),
+                 bill.payer(Subject::Kind::volume, layout.whole, kVolumesToSurfaces));
     }
 }
 

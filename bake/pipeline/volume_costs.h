@@ -27,9 +27,15 @@ struct CostedVolumes {
 };
 CostedVolumes make_costed_volumes(const CostRequest& request);
 
-/// The stages of add_volumes in order, without those of qualities that a target error tries first.
-/// `row_count`: rows of all vertices.
-void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, double row_count,
-                  Bill& bill);
+/// Light of surfaces that volumes alone see (find_surface_light).
+void bill_surface_light(const CostRequest& request, const CostedVolumes& volumes, Bill& bill);
+
+/// The stages of bake_and_measure in order, without those of qualities that a target error tries
+/// first.
+void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, Bill& bill);
+
+/// What volumes add to the stage of `rows` of `receivers` (complete_rows.h).
+void bill_completion(const CostRequest& request, const CostedVolumes& volumes, double receivers,
+                     double rows, Bill& bill);
 
 }  // namespace opaline::bake

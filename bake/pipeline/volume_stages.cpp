@@ -1,7 +1,6 @@
 #include "bake/pipeline/volume_stages.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,40 +9,41 @@
 #include "bake/accuracy/error_warnings.h"
 #include "bake/accuracy/volumes/volume_error.h"
 #include "bake/base/interrupted.h"
-#include "bake/volumes/bake_volumes.h"
-#include "bake/volumes/dim_surfaces.h"
+#include "bake/transport/density/density_space.h"
+#include "bake/volumes/place_nodes.h"
 #include "bake/volumes/volume_knobs.h"
-#include "bake/volumes/volume_parts.h"
 #include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 namespace {
 
-// Volumes of one quality, and how far they err.
-struct BakedVolumes {
-    Knobs knobs;
-    VolumePlan plan;
-    VolumeParts parts;  // of the plan's layouts
-    formats::Volumes volumes;
-    VolumeFindings findings;
-    std::optional<VolumeErrorReport> error;  // nothing: they scatter no light
+double rms_of(const BakedVolumes& baked) {
+    return baked.error ? baked.error->rms_relative : 0;
+}
 
-    double rms() const { return error ? error->rms_relative : 0; }
-    VolumeCheckOptions check_effort(const formats::Scene& scene) const {
-        return volume_check_effort(count_volume_work(parts.scene_or(scene), parts.layouts, knobs),
-                                   parts.layouts, knobs);
-    }
-};
+VolumeCheckOptions check_effort(const BakedVolumes& baked, const formats::Scene& scene) {
+    const VolumeParts& parts = baked.parts;
+    return volume_check_effort(count_volume_work(parts.scene_or(scene), parts.layouts, baked.knobs),
+                               parts.layouts, baked.knobs);
+}
+
+// A file of volumes alone, as their checks see it.
+formats::AssetView view_of(const BakedVolumes& baked) {
+    formats::AssetView view;
+    view.cubemap_size = baked.knobs.cubemap_size;
+    view.volumes = baked.volumes.view();
+    return view;
+}
 
 formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const Knobs& knobs,
-                                             const Context& context, BakeResult& result) {
-    BakedVolumes baked{knobs, plan_volumes(inputs.scene, knobs), {}, {}, {}, {}};
+                                             const Context& context, StageLog& log) {
+    BakedVolumes baked;
+    baked.knobs = knobs;
+    baked.plan = plan_volumes(inputs.scene, knobs);
     baked.parts = part_volumes(inputs.scene, baked.plan.layouts, knobs);
-    const formats::AssetView surfaces = result.asset.view();
-    const ShownSurfaces shown{inputs.scene, inputs.layouts, inputs.receivers, surfaces};
-    auto volumes = bake_volumes(
-        {baked.parts.scene_or(inputs.scene), inputs.rays, baked.parts.layouts, knobs, &shown},
-        context, result.stages, &baked.findings);
+    auto volumes = bake_volumes({baked.parts.scene_or(inputs.scene), inputs.rays,
+                                 baked.parts.layouts, knobs, inputs.surfaces},
+                                context, log, &baked.findings);
     if (!volumes) return std::move(volumes).error();
     for (const MethodMeasure& measure : baked.findings.methods) {
         tell_method(measure, method_budget(knobs), baked.plan.entries);
@@ -51,15 +51,12 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
     if (context.cancelled()) return interrupted();
     baked.volumes = std::move(*volumes);
     if (std::ranges::none_of(baked.plan.layouts, &VolumeLayout::has_nodes)) return baked;
-    formats::AssetView view = result.asset.view();
-    view.volumes = baked.volumes.view();
-    auto error =
-        run_stage(result.stages, "self-check of volumes", "self-check", [&](std::uint64_t& traced) {
-            auto found =
-                check_volumes(inputs.scene, view, baked.check_effort(inputs.scene), context);
-            traced += found ? found->events : 0;
-            return found;
-        });
+    auto error = run_stage(log, "self-check of volumes", "self-check", [&](std::uint64_t& traced) {
+        auto found =
+            check_volumes(inputs.scene, view_of(baked), check_effort(baked, inputs.scene), context);
+        traced += found ? found->events : 0;
+        return found;
+    });
     if (!error) return std::move(error).error();
     if (error->rays_checked > 0) {
         baked.error = std::move(*error);
@@ -68,20 +65,22 @@ formats::Result<BakedVolumes> bake_and_check(const VolumeStages& inputs, const K
 }
 
 // Quality after quality, until the error is low enough or hardly falls.
-formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const Context& context,
-                                              BakeResult& result) {
+formats::Result<BakedVolumes> bake_for_target(const VolumeStages& inputs, const Knobs& knobs,
+                                              const Context& context, StageLog& log) {
     constexpr double kLeastGain = 0.9;
     std::optional<BakedVolumes> best;
+    std::vector<VolumeTrial> trials;
     for (const Quality quality :
          {Quality::draft, Quality::preview, Quality::production, Quality::reference}) {
-        auto tried = bake_and_check(
-            inputs, with_volume_quality(inputs.effects, result.knobs, quality), context, result);
+        auto tried = bake_and_check(inputs, with_volume_quality(inputs.effects, knobs, quality),
+                                    context, log);
         if (!tried) return std::move(tried).error();
-        result.volume_trials.push_back({quality, tried->rms()});
-        if (best && tried->rms() > kLeastGain * best->rms()) break;
+        trials.push_back({quality, rms_of(*tried)});
+        if (best && rms_of(*tried) > kLeastGain * rms_of(*best)) break;
         best = std::move(*tried);
-        if (best->rms() <= result.knobs.error_target) break;
+        if (rms_of(*best) <= knobs.error_target) break;
     }
+    best->trials = std::move(trials);
     return std::move(*best);
 }
 
@@ -100,53 +99,19 @@ void warn_of_noise(const formats::Scene& scene, std::span<const RowNoise> noises
 }
 
 // How far the light of volumes errs, where there is any.
-formats::Status measure_glow(const VolumeStages& inputs, const VolumeCheckOptions& effort,
-                             const Context& context, BakeResult& result) {
-    if (result.glowing_volumes.empty()) return formats::ok_status();
-    auto error = run_stage(
-        result.stages, "self-check of light of volumes", "self-check", [&](std::uint64_t& traced) {
-            auto found = check_glow(inputs.scene, result.asset.view(), effort, context);
+formats::Status measure_glow(const VolumeStages& inputs, const Context& context, StageLog& log,
+                             BakedVolumes& baked) {
+    if (count_glowing(baked.plan.layouts) == 0) return formats::ok_status();
+    auto error =
+        run_stage(log, "self-check of light of volumes", "self-check", [&](std::uint64_t& traced) {
+            auto found = check_glow(inputs.scene, view_of(baked), check_effort(baked, inputs.scene),
+                                    context);
             traced += found ? found->events : 0;
             return found;
         });
     if (!error) return std::move(error).error();
-    result.error.add_part("light of volumes", error->rays_checked, error->rms_relative);
+    baked.glow = *error;
     return formats::ok_status();
-}
-
-// What was chosen, so that the same options give the same bake again.
-void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& knobs) {
-    for (const EffectDescriptor& effect : effects.effects) {
-        for (const KnobSpec* knob : effect.knobs) {
-            if (effect.kind == Subject::Kind::volume) {
-                knobs.set(*knob, baked.knobs[*knob]);
-            }
-        }
-    }
-    const auto& layouts = baked.parts.layouts;
-    if (!baked.parts.scene && !layouts.empty() &&
-        std::ranges::all_of(layouts, [&](const VolumeLayout& layout) {
-            return layout.spacing == layouts.front().spacing;
-        })) {
-        knobs.set(kVolumeSpacing, layouts.front().spacing);
-    }
-}
-
-// The self-check saw the rows before volumes dimmed them; encoding them again errs by itself, and
-// both are independent.
-void add_encoding_error(const DimmedError& dimmed, BakeResult& result) {
-    const auto widen = [&](MeasuredError& error) {
-        for (double* const e : {&error.rms_relative, &error.ci95[0], &error.ci95[1]}) {
-            *e = std::hypot(*e, dimmed.rms_relative);
-        }
-    };
-    widen(result.error);
-    widen(result.error.at_receivers);
-    widen(result.error.between);
-    result.error.by_effect.push_back({"shadows of volumes", dimmed.rms_relative});
-    for (std::size_t i = 0; i < result.receiver_errors.size(); ++i) {
-        result.receiver_errors[i] = std::hypot(result.receiver_errors[i], dimmed.receivers[i]);
-    }
 }
 
 }  // namespace
@@ -201,46 +166,65 @@ void number_glow(std::span<const Lamp> lamps, BakeResult& result) {
     }
 }
 
-formats::Status add_volumes(const VolumeStages& inputs, const Context& context,
-                            BakeResult& result) {
-    const bool has_target = result.knobs.error_target > 0;
-    auto baked = has_target ? bake_for_target(inputs, context, result)
-                            : bake_and_check(inputs, result.knobs, context, result);
-    if (!baked) return std::move(baked).error();
-    if (has_target) {
-        keep_knobs(inputs.effects, *baked, result.knobs);
+formats::Result<BakedVolumes> bake_and_measure(const VolumeStages& inputs, const Knobs& knobs,
+                                               const Context& context, StageLog& log) {
+    auto baked = knobs.error_target > 0 ? bake_for_target(inputs, knobs, context, log)
+                                        : bake_and_check(inputs, knobs, context, log);
+    if (!baked) return baked;
+    if (auto status = measure_glow(inputs, context, log, *baked); !status) {
+        return std::move(status).error();
     }
-    for (const VolumeLayout& layout : baked->plan.layouts) {
+    return baked;
+}
+
+void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& knobs) {
+    for (const EffectDescriptor& effect : effects.effects) {
+        for (const KnobSpec* knob : effect.knobs) {
+            if (effect.kind == Subject::Kind::volume) {
+                knobs.set(*knob, baked.knobs[*knob]);
+            }
+        }
+    }
+    const auto& layouts = baked.parts.layouts;
+    if (!baked.parts.scene && !layouts.empty() &&
+        std::ranges::all_of(layouts, [&](const VolumeLayout& layout) {
+            return layout.spacing == layouts.front().spacing;
+        })) {
+        knobs.set(kVolumeSpacing, layouts.front().spacing);
+    }
+}
+
+bool colours_surfaces(const formats::Scene& scene, std::span<const VolumeLayout> layouts) {
+    if (layouts.empty()) return false;
+    const DensitySpace space = make_density_space(scene, layouts);
+    return !space.is_grey ||
+           (!space.light_grey && std::ranges::any_of(layouts, &VolumeLayout::lights_surfaces));
+}
+
+std::optional<SentLight> find_sent_light(const VolumeStages& inputs, const BakedVolumes& baked,
+                                         const Knobs& knobs) {
+    const VolumeParts& parts = baked.parts;
+    if (std::ranges::none_of(parts.layouts, &VolumeLayout::lights_surfaces)) return std::nullopt;
+    return make_sent_light(parts.scene_or(inputs.scene), inputs.rays, parts.layouts,
+                           baked.volumes.view(), knobs);
+}
+
+void add_volumes(const formats::Scene& scene, BakedVolumes&& baked, BakeResult& result) {
+    for (const VolumeLayout& layout : baked.plan.layouts) {
         if (layout.glows) {
-            result.glowing_volumes.push_back(inputs.scene.volumes[layout.volume].emitter);
+            result.glowing_volumes.push_back(scene.volumes[layout.volume].emitter);
         }
     }
-    warn_of_noise(inputs.scene, baked->findings.noise, result.warnings);
-    const VolumeParts& parts = baked->parts;
-    result.asset.volumes = std::move(baked->volumes);
-    if (auto status = measure_glow(inputs, baked->check_effort(inputs.scene), context, result);
-        !status) {
-        return status;
+    warn_of_noise(scene, baked.findings.noise, result.warnings);
+    if (baked.glow) {
+        result.error.add_part("light of volumes", baked.glow->rays_checked,
+                              baked.glow->rms_relative);
     }
-    replace_entries(Subject::Kind::volume, baked->plan.entries, result.plan);
-    result.volume_error = std::move(baked->error);
-    if (result.asset.position.empty()) return formats::ok_status();
-    const auto dimmed = run_stage(result.stages, "shadows of volumes", [&](std::uint64_t& rays) {
-        if (std::ranges::none_of(parts.layouts, &VolumeLayout::lights_surfaces)) {
-            return dim_surfaces(inputs.scene, result.knobs, nullptr, context, result.asset, rays);
-        }
-        const SentLight light =
-            make_sent_light(parts.scene_or(inputs.scene), inputs.rays, parts.layouts,
-                            result.asset.volumes.view(), result.knobs);
-        const VertexLight sent{light, inputs.receivers};
-        return dim_surfaces(inputs.scene, result.knobs, &sent, context, result.asset, rays);
-    });
-    if (!dimmed) {
-        return dimmed.error();
-    }
-    if (context.cancelled()) return interrupted();
-    add_encoding_error(*dimmed, result);
-    return formats::ok_status();
+    replace_entries(Subject::Kind::volume, baked.plan.entries, result.plan);
+    result.asset.volumes = std::move(baked.volumes);
+    result.volume_error = std::move(baked.error);
+    result.volume_trials = std::move(baked.trials);
+    warn_of_volumes(result.knobs, result.volume_error, result.warnings);
 }
 
 void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>& error,

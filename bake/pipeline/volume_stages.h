@@ -5,12 +5,15 @@
 #include <vector>
 
 #include "bake/accuracy/volumes/volume_error.h"
+#include "bake/exchange/bounce_light.h"
 #include "bake/lamps/lamps.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/plan/knobs.h"
-#include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
+#include "bake/volumes/bake_volumes.h"
 #include "bake/volumes/plan_volumes.h"
+#include "bake/volumes/sent_light.h"
+#include "bake/volumes/volume_parts.h"
 #include "bake/volumes/volume_work.h"
 #include "formats/opal/result.h"
 
@@ -25,9 +28,20 @@ void warn_of_volumes(const Knobs& knobs, const std::optional<VolumeErrorReport>&
 struct VolumeStages {
     const EffectTable& effects;
     const formats::Scene& scene;
-    const RayScene& rays;                    ///< surfaces; may be empty
-    std::span<const ReceiverSet> receivers;  ///< in the order of the scene's primitives
-    std::span<const RowLayout> layouts;      ///< by material
+    const RayScene& rays;                   ///< surfaces; may be empty
+    const BounceLight* surfaces = nullptr;  ///< what they send to volumes; null: nothing
+};
+
+/// Volumes of one quality, and how far they err.
+struct BakedVolumes {
+    Knobs knobs;
+    VolumePlan plan;
+    VolumeParts parts;  ///< of the plan's layouts
+    formats::Volumes volumes;
+    VolumeFindings findings;
+    std::optional<VolumeErrorReport> error;  ///< nothing: they scatter no light
+    std::optional<GlowErrorReport> glow;     ///< nothing: none is an emitter
+    std::vector<VolumeTrial> trials;         ///< where an error was asked for, in their order
 };
 
 /// Effort of the check of a bake's volumes: with Knobs::check_model until the noise is small;
@@ -40,12 +54,25 @@ VolumeCheckOptions volume_check_effort(std::span<const VolumeWork> works,
 /// their plan goes by.
 Knobs with_volume_quality(const EffectTable& effects, Knobs knobs, Quality quality);
 
-/// Adds a file's volumes to `result`, lit by the sky and by the file's surfaces, measures them,
-/// dims the rows of surfaces by them, and adds the light that they scatter to surfaces. With
+/// A scene's volumes, lit by the sky and by its surfaces, and their errors. With
 /// Knobs::error_target they are baked in quality after quality, `draft` first, until the measured
-/// error is below the target or falls by less than a tenth; the best bake so far is kept, and
-/// `result.knobs` has its values. Errors: as bake_volumes and check_volumes; interrupted.
-formats::Status add_volumes(const VolumeStages& inputs, const Context& context, BakeResult& result);
+/// error is below the target or falls by less than a tenth; the best bake so far is kept. Errors:
+/// as bake_volumes and check_volumes; interrupted.
+formats::Result<BakedVolumes> bake_and_measure(const VolumeStages& inputs, const Knobs& knobs,
+                                               const Context& context, StageLog& log);
+
+/// What was chosen for an error, so that the same options give the same bake again.
+void keep_knobs(const EffectTable& effects, const BakedVolumes& baked, Knobs& knobs);
+
+/// Whether volumes make the light of surfaces differ between the three bands.
+bool colours_surfaces(const formats::Scene& scene, std::span<const VolumeLayout> layouts);
+
+/// What they scatter to surfaces; nothing: none. Points into the arguments.
+std::optional<SentLight> find_sent_light(const VolumeStages& inputs, const BakedVolumes& baked,
+                                         const Knobs& knobs);
+
+/// Adds a file's volumes to the result of its surfaces, and says how far they err.
+void add_volumes(const formats::Scene& scene, BakedVolumes&& baked, BakeResult& result);
 
 /// Gives light of volumes the numbers of the file's emitters. `lamps`: those that the file has;
 /// volumes that are not among them come last.

@@ -10,7 +10,8 @@
 
 namespace opaline::bake {
 
-struct OtherLight;  // exchange/other_light.h
+struct DensitySpace;  // transport/density/density_space.h
+struct OtherLight;    // exchange/other_light.h
 struct EffectTable;
 
 /// What all stages of a bake share, read-only: inspected and placed once, then handed on.
@@ -25,6 +26,9 @@ struct BakeInputs {
     const OtherLight* light = nullptr;
     /// Of textures that what a bake integrates over is filtered by; null: looked up at points.
     const ScenePyramids* textures = nullptr;
+    /// Volumes between the sky and what is lit by it, as truths see them; null: none. Rows are
+    /// completed by what volumes leave of them (complete_rows.h).
+    const DensitySpace* between = nullptr;
 };
 
 }  // namespace opaline::bake

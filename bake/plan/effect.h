@@ -148,7 +148,8 @@ struct LightInputs {
     const Context& context;
     std::span<const RowLayout> layouts;  ///< by material
     std::vector<std::uint8_t> acts;      ///< by material: whether the effect does
-    std::uint32_t rays_of_receiver = 0;  ///< to other surfaces, as the effect asks for
+    std::uint32_t rays_of_receiver = 0;     ///< to other surfaces, as the effect asks for
+    std::span<const Receiver> onlookers{};  ///< places that see surfaces, besides receivers
 };
 
 /// The interface of an effect. Plan, cost model, pilot, self-check, sweep, report and command line

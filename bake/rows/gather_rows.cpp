@@ -135,6 +135,10 @@ GatheredRows gather_rows(const RowJob& job, std::vector<Gatherer> gatherers, con
                 for (std::size_t v = range.begin; v < range.end; ++v) {
                     block.rays += gather_receiver(sources, set.outside[batch[v]], points[v],
                                                   place_of(batch, v), row);
+                    if (job.volumes != nullptr) {
+                        block.rays += complete_row(*job.volumes, *job.material, layout,
+                                                   {set.outside[batch[v]], points[v]}, row);
+                    }
                     encode_receiver(encoder, row, block.rows);
                     if (job.measures_errors) {
                         block.losses.add(row);

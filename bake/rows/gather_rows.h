@@ -6,6 +6,7 @@
 
 #include "bake/encode/row_sink.h"
 #include "bake/rows/subject_states.h"
+#include "bake/volumes/complete_rows.h"
 
 namespace opaline::bake {
 
@@ -55,6 +56,9 @@ struct RowJob {
     /// (SharedBatches); null: the set gathers batches of its own.
     const std::vector<Gatherer>* shared = nullptr;
     std::size_t place = 0;
+    /// Before the receivers, of the `material`; null: none.
+    const VolumesBefore* volumes = nullptr;
+    const formats::Material* material = nullptr;
 };
 
 struct GatheredRows {

@@ -7,7 +7,9 @@
 
 #include "bake/base/frame.h"
 #include "bake/scattering/fresnel.h"
+#include "bake/transport/density/density_space.h"
 #include "formats/opal/cubemap.h"
+#include "formats/opal/rgb.h"
 
 namespace opaline::bake {
 namespace {
@@ -38,8 +40,17 @@ std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask&
 
 }  // namespace
 
-SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun) {
+double let_through(const DensitySpace* between, glm::vec3 from, glm::vec3 direction) {
+    if (between == nullptr) return 1;
+    const std::array<float, 3> depth = optical_depth(*between, from, direction);
+    return static_cast<double>(
+        formats::luminance({std::exp(-depth[0]), std::exp(-depth[1]), std::exp(-depth[2])}));
+}
+
+SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun,
+                      const DensitySpace* between) {
     SunRays suns;
+    suns.between = between;
     std::uint32_t lane = kLanes;
     for (std::uint32_t l = 0; l < lights.size(); ++l) {
         for (const TestDisc& disc : lights[l].discs) {
@@ -92,19 +103,20 @@ std::uint64_t add_sun_irradiance(const RayScene& rays, const SunRays& suns,
         for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
             if (lanes[lane] != 0) {
                 const double c = std::min(1.0, static_cast<double>(cosine[lane]));
-                irradiance[sun.light[lane]] += c * fresnel_transmittance(c, eta) *
-                                               static_cast<double>(sun.flux[lane]) *
-                                               factor.at(direction_of(packet, lane));
+                irradiance[sun.light[lane]] +=
+                    c * fresnel_transmittance(c, eta) * static_cast<double>(sun.flux[lane]) *
+                    factor.at(direction_of(packet, lane)) *
+                    let_through(suns.between, receiver.origin, direction_of(packet, lane));
             }
         }
     }
     return traced;
 }
 
-SmoothLights make_smooth_lights(std::span<const TestLight> lights) {
+SmoothLights make_smooth_lights(std::span<const TestLight> lights, const DensitySpace* between) {
     const std::vector<double> solid_angle = formats::texel_solid_angles(kTruthCubemap);
     const std::size_t texels = formats::cubemap_texels(kTruthCubemap);
-    SmoothLights smooth{lights.size(), std::vector<float>(texels * lights.size())};
+    SmoothLights smooth{lights.size(), std::vector<float>(texels * lights.size()), between};
     for (std::size_t l = 0; l < lights.size(); ++l) {
         for (std::size_t j = 0; j < texels; ++j) {
             smooth.radiance[j * lights.size() + l] = static_cast<float>(
@@ -143,7 +155,8 @@ std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& li
     for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
         if (lanes[lane] != 0) {
             const double weight =
-                pi / kLanes * fresnel_transmittance(static_cast<double>(cosine[lane]), eta);
+                pi / kLanes * fresnel_transmittance(static_cast<double>(cosine[lane]), eta) *
+                let_through(lights.between, receiver.origin, direction_of(packet, lane));
             const float* radiance = lights.towards(direction_of(packet, lane));
             for (std::size_t l = 0; l < lights.lights; ++l) {
                 irradiance[l] += weight * static_cast<double>(radiance[l]);
@@ -164,6 +177,7 @@ std::uint64_t add_smooth_radiance(const RayScene& rays, const SmoothLights& ligh
     const std::uint64_t traced = keep_unoccluded(rays, packet, lanes);
     if (lanes[0] != 0) {
         const float* from = lights.towards(direction);
+        factor *= let_through(lights.between, receiver.origin, direction);
         for (std::size_t l = 0; l < lights.lights; ++l) {
             radiance[l] += factor * static_cast<double>(from[l]);
         }

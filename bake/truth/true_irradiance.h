@@ -12,6 +12,12 @@
 
 namespace opaline::bake {
 
+struct DensitySpace;
+
+/// The share of the sky's light from a direction that volumes let through to a place, of white
+/// light by its luminance; null: all.
+double let_through(const DensitySpace* between, glm::vec3 from, glm::vec3 direction);
+
 /// Rays to all suns of the test lights; each represents an equal part of its disc.
 struct SunRays {
     struct Packet {
@@ -20,10 +26,12 @@ struct SunRays {
         std::array<std::uint32_t, RayPacket::kSize> light;
     };
     std::vector<Packet> packets;
+    const DensitySpace* between = nullptr;  ///< volumes that dim them; null: none
 };
 
 /// `per_sun`: rays to each disc, >= 1.
-SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun);
+SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun,
+                      const DensitySpace* between = nullptr);
 
 /// A factor of the light from direction w: constant + linear . w + w . square w.
 struct LightFactor {
@@ -47,10 +55,12 @@ std::uint64_t add_sun_irradiance(const RayScene& rays, const SunRays& suns,
 struct SmoothLights {
     std::size_t lights = 0;
     std::vector<float> radiance;
+    const DensitySpace* between = nullptr;  ///< volumes that dim them; null: none
 
     const float* towards(glm::vec3 direction) const;
 };
-SmoothLights make_smooth_lights(std::span<const TestLight> lights);
+SmoothLights make_smooth_lights(std::span<const TestLight> lights,
+                                const DensitySpace* between = nullptr);
 
 /// Adds an estimate of the irradiance without suns, times Ft, from sixteen
 /// cosine-distributed rays. `u`: random, in [0, 1)^2. Unbiased. Returns the number of rays.

@@ -18,7 +18,8 @@ struct ReflectionTruth {
     std::span<const TestLight> lights;
 };
 /// `lights` must outlive the result.
-ReflectionTruth make_reflection_truth(std::span<const TestLight> lights);
+ReflectionTruth make_reflection_truth(std::span<const TestLight> lights,
+                                      const DensitySpace* between = nullptr);
 /// Both estimates are equal, because the computation is deterministic. `traced` adds up.
 TwoEstimates eval_reflection(const ReflectionTruth& truth, const RayScene& rays,
                              const Receiver& receiver, std::uint64_t& traced);

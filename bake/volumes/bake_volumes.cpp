@@ -17,7 +17,6 @@
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/phase_table.h"
 #include "bake/volumes/place_nodes.h"
-#include "bake/volumes/seen_surfaces.h"
 #include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_paths.h"
@@ -183,9 +182,11 @@ void add_to_pools(const VolumeJob& job, const PlacedNodes& nodes, std::size_t nu
     }
 }
 
-formats::Result<formats::SparseRows> gather_node_rows(
-    const VolumeJob& given, const PlacedNodes& nodes, LitNodes lit, const SeenSurfaces* seen,
-    const Context& context, VolumeFindings* findings, std::uint64_t& rays) {
+formats::Result<formats::SparseRows> gather_node_rows(const VolumeJob& given,
+                                                      const PlacedNodes& nodes, LitNodes lit,
+                                                      const SeenLight* seen, const Context& context,
+                                                      VolumeFindings* findings,
+                                                      std::uint64_t& rays) {
     const VolumeWalkSpace walks{nodes.space, given.rays,   nodes.lattices,   nodes.first,
                                 lit.depths,  nodes.coarse, given.knobs.seed, seen};
     const PathCells groups = group_cells(nodes.coarse);
@@ -283,13 +284,6 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
                               " GB of memory",
                           "raise --volume-spacing, or bake in a lower quality");
     }
-    const bool sees = job.surfaces != nullptr && sees_surfaces(job.layouts);
-    if (sees && seen_surfaces_bytes(*job.surfaces, nodes.space.bands(), nodes.coarse.size()) >
-                    kDepthBytes) {
-        return make_error(ErrorKind::resource, "", std::string(kSurfacesToVolumes),
-                          "light of so many vertices takes more memory than walks may have",
-                          "name the other effects in --effects, or make the meshes coarser");
-    }
     for (const VolumeLayout& layout : job.layouts) {
         formats::VolumeRecord record;
         const DensityVolume& own = nodes.space.volumes[layout.volume];
@@ -312,13 +306,13 @@ formats::Result<formats::Volumes> bake_volumes(const VolumeJob& job, const Conte
     LitNodes lit =
         run_stage(log, "light in volumes", "volume-single: rows",
                   [&](std::uint64_t& rays) { return light_nodes(job, nodes, context, rays); });
-    std::optional<SeenSurfaces> seen;
-    if (sees) {
-        seen.emplace(run_stage(
-            log, "surfaces that volumes see", "surface-volume: rows", [&](std::uint64_t&) {
-                return find_seen_surfaces(*job.surfaces, nodes.space, nodes.coarse,
-                                          nodes.space.bands(), context);
-            }));
+    std::optional<SeenLight> seen;
+    if (job.surfaces != nullptr && sees_surfaces(job.layouts)) {
+        seen.emplace(run_stage(log, "surfaces that volumes see", "surface-volume: rows",
+                               [&](std::uint64_t&) {
+                                   return see_surfaces(*job.surfaces, nodes.space, nodes.coarse,
+                                                       nodes.space.bands(), context);
+                               }));
     }
     if (context.cancelled()) {
         return formats::Volumes{};

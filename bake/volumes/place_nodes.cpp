@@ -10,6 +10,7 @@
 #include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
+#include "bake/volumes/walk_parts.h"
 #include "formats/opal/volumes.h"
 
 namespace opaline::bake {
@@ -71,6 +72,28 @@ std::uint32_t coarse_cells(const Knobs& knobs) {
 NodeLattice lattice_of(const formats::Volume& volume, const VolumeLayout& layout) {
     return layout.glows ? make_node_lattice(volume.density, layout.spacing, volume.emission)
                         : make_node_lattice(volume.density, layout.spacing);
+}
+
+std::vector<Receiver> draw_onlookers(const formats::Scene& scene,
+                                     std::span<const VolumeLayout> layouts) {
+    constexpr std::size_t kPlaces = 512;
+    std::vector<glm::vec3> all;
+    for (const VolumeLayout& layout : layouts) {
+        if (!layout.sees_surfaces) continue;
+        const formats::Volume& volume = scene.volumes[layout.volume];
+        for (const glm::ivec3 node : lattice_of(volume, layout).node) {
+            all.emplace_back(volume.density.to_scene * glm::dvec4(glm::dvec3(node), 1.0));
+        }
+    }
+    const std::size_t count = std::min(all.size(), kPlaces);
+    std::vector<Receiver> onlookers;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const glm::vec3 place = all[(2 * i + 1) * all.size() / (2 * count)];
+        const glm::vec3 way = even_direction(i, static_cast<std::uint32_t>(count), 0.5f, 0.5f);
+        onlookers.push_back({place, way});
+        onlookers.push_back({place, -way});
+    }
+    return onlookers;
 }
 
 PlacedNodes place_nodes(const VolumeJob& job) {

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/exchange/bounce_light.h"
 #include "bake/transport/density/attenuation.h"
 #include "bake/transport/density/density_space.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/node_rows.h"
 #include "bake/volumes/plan_volumes.h"
-#include "bake/volumes/seen_surfaces.h"
 #include "bake/volumes/volume_walks.h"
 #include "formats/opal/sparse_rows.h"
 #include "formats/scene.h"
@@ -30,7 +30,7 @@ struct VolumeJob {
     const RayScene& rays;  ///< surfaces that block the light; may be empty
     std::span<const VolumeLayout> layouts;
     const Knobs& knobs;
-    const ShownSurfaces* surfaces = nullptr;  ///< that send light to volumes; null: black
+    const BounceLight* surfaces = nullptr;  ///< that send light to volumes; null: black
 };
 
 /// The volumes of a scene, with the rows of layouts.
@@ -59,6 +59,11 @@ struct PlacedNodes {
 
 /// Errors: none; where a layout has no nodes, its lattice is empty.
 PlacedNodes place_nodes(const VolumeJob& job);
+
+/// Places in volumes that see surfaces, evenly among their nodes, each looking two ways: for
+/// LightInputs::onlookers.
+std::vector<Receiver> draw_onlookers(const formats::Scene& scene,
+                                     std::span<const VolumeLayout> layouts);
 
 /// [m], of a volume's node.
 glm::vec3 position_of(const VolumeJob& job, const PlacedNodes& nodes, std::uint32_t volume,

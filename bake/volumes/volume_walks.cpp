@@ -68,8 +68,9 @@ std::uint64_t follow(const VolumeWalkSpace& walk, const WalkReceiver& receiver, 
             sample_flight(walk.space, track.band, at, direction, met.distance, random);
         if (!hit.happens) {
             if (met.is_there() && receiver.sees_surfaces && walk.surfaces != nullptr) {
-                add_seen_surface(*walk.surfaces, met, direction, weight, track.first, track.end,
-                                 random(), sum);
+                add_seen(*walk.surfaces,
+                         {at + met.distance * direction, met.normal, met.material, met.cosine},
+                         weight, track.first, track.end, sum);
             }
             break;
         }

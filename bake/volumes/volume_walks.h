@@ -4,11 +4,11 @@
 #include <glm/glm.hpp>
 #include <span>
 
+#include "bake/exchange/seen_light.h"
 #include "bake/transport/density/attenuation.h"
 #include "bake/transport/density/density_space.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/volumes/node_lattice.h"
-#include "bake/volumes/seen_surfaces.h"
 
 namespace opaline::bake {
 
@@ -21,7 +21,7 @@ struct VolumeWalkSpace {
     const DepthTable& depths;               ///< of the nodes of all volumes
     const LightCells& cells;                ///< of the table
     std::uint64_t seed = 0;
-    const SeenSurfaces* surfaces = nullptr;  ///< that send light to volumes; null: black
+    const SeenLight* surfaces = nullptr;  ///< that send light to volumes; null: black
 };
 
 /// Where multiple scattering is wanted.

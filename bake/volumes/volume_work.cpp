@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "bake/exchange/bounce_light.h"
 #include "bake/path_integral/path_estimate.h"
 #include "bake/transport/density/density_space.h"
 #include "bake/volumes/node_lattice.h"
@@ -208,17 +209,21 @@ Work scattering_work(const CostInput& input, const VolumeWork& work) {
 
 Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
                   double rows) {
-    constexpr std::uint32_t kFinest = 16;  // dim_surfaces.cpp
+    constexpr std::uint32_t kFinest = 16;  // complete_rows.cpp
     const double cells = texels(std::min(input.knobs.cubemap_size, kFinest));
     return {0, rows * texels(input.knobs.cubemap_size) * kEncodeGrey +
                    receivers * cells * steps_to_light(works) * kDensityStep};
 }
 
-Work seen_surfaces_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
-                        double rows) {
+Work seen_surfaces_work(const CostInput& input, std::span<const VolumeWork> works) {
     const double cells = texels(coarse_cells(input.knobs));
-    return {0, rows * texels(input.knobs.cubemap_size) * kEncodeGrey +
-                   receivers * cells * steps_to_light(works) * kDensityStep};
+    return {
+        0, static_cast<double>(count_scatterers(0)) * cells * steps_to_light(works) * kDensityStep};
+}
+
+Work surface_light_work(const CostInput& input) {
+    return {0, static_cast<double>(count_scatterers(0)) * count_rays(kBounceCubemap) *
+                   kCoherentRay.at(input.triangles)};
 }
 
 Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
@@ -270,10 +275,11 @@ double volume_memory(const VolumeWork& work, const Knobs& knobs) {
                (attenuated_row_bytes(work, knobs) + scattered_row_bytes(work, knobs));
 }
 
-double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs, double sides) {
-    constexpr double kCode = 2;
+double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs) {
+    constexpr double kCode = 2, kOwnRows = 4, kBands = 3;  // with nodes, and before they are made
     const double bands = works.empty() ? 0 : works.front().bands;
-    return kCode * bands * sides * texels(coarse_cells(knobs));
+    return kCode * static_cast<double>(count_scatterers(0)) *
+           (bands * texels(coarse_cells(knobs)) + kOwnRows * kBands * texels(kBounceCubemap));
 }
 
 }  // namespace opaline::bake

@@ -57,7 +57,7 @@ Work attenuation_work(const CostInput& input, const VolumeWork& work);
 Work scattering_work(const CostInput& input, const VolumeWork& work);
 
 /// Optical depths of `receivers` vertices toward all texels through volumes of these, and their
-/// rows once more.
+/// rows to texels and back.
 Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
                   double rows);
 
@@ -65,10 +65,11 @@ Work dimming_work(const CostInput& input, std::span<const VolumeWork> works, dou
 Work sent_light_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout,
                      double receivers);
 
-/// What surfaces of `receivers` vertices and `rows` rows send to volumes: as dimming_work, toward
-/// fewer directions.
-Work seen_surfaces_work(const CostInput& input, std::span<const VolumeWork> works, double receivers,
-                        double rows);
+/// Scatterers of surfaces that volumes alone see, and the sky's light there.
+Work surface_light_work(const CostInput& input);
+
+/// What they send to volumes, dimmed.
+Work seen_surfaces_work(const CostInput& input, std::span<const VolumeWork> works);
 
 /// Bytes in the file: of density and nodes; at most of the rows of light that arrives unscattered,
 /// and of those of multiple scattering.
@@ -79,7 +80,7 @@ double scattered_row_bytes(const VolumeWork& work, const Knobs& knobs);
 /// Memory of one volume [bytes]: density, nodes, optical depths of walks, and rows.
 double volume_memory(const VolumeWork& work, const Knobs& knobs);
 
-/// Memory [bytes] of the light that so many `sides` of vertices send to volumes.
-double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs, double sides);
+/// Memory [bytes] of the light that surfaces send to volumes.
+double seen_surfaces_memory(std::span<const VolumeWork> works, const Knobs& knobs);
 
 }  // namespace opaline::bake

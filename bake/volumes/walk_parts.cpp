@@ -36,8 +36,10 @@ MetSurface find_surface(const RayScene& rays, glm::vec3 from, glm::vec3 directio
     if (hits.hit[0] == 0) {
         return {};
     }
-    return {hits.distance[0], hits.primitive[0], hits.first_index[0],
-            hits.u[0],        hits.v[0],         hits.cosine[0] > 0};
+    return {hits.distance[0],
+            hits.material[0],
+            {hits.normal_x[0], hits.normal_y[0], hits.normal_z[0]},
+            hits.cosine[0]};
 }
 
 bool survives(const std::array<float, 3>& albedo, std::size_t first, std::size_t end,

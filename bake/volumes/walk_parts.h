@@ -58,9 +58,9 @@ glm::vec3 even_direction(std::uint32_t i, std::uint32_t count, float u, float v)
 /// The first surface that a walk meets.
 struct MetSurface {
     float distance = std::numeric_limits<float>::infinity();  ///< [m]; without one infinite
-    std::uint32_t primitive = 0, first_index = 0;  ///< of its triangle, into Primitive::index
-    float u = 0, v = 0;                            ///< weights of its second and third corner
-    bool behind = false;                           ///< from the side its normal points away from
+    std::uint32_t material = 0;
+    glm::vec3 normal{0};  ///< unit, of its facet as it is wound; zero: it has none
+    float cosine = 0;     ///< of the ray with that
 
     bool is_there() const { return distance < std::numeric_limits<float>::infinity(); }
 };

@@ -139,7 +139,7 @@ struct Truth : Prepared {
 
 PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort, std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
-    truth->truth = make_reflection_truth(lights);
+    truth->truth = make_reflection_truth(lights, inputs.bake.between);
     truth->other = true_light_of(inputs, lights);
     return truth;
 }

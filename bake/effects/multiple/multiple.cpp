@@ -201,8 +201,8 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
                             inputs.layout.bands() == 1, inner_materials(inputs));
         truth->lobe = make_exit_lobe(profile_of(inputs.own).eta);
     }
-    truth->suns = make_sun_rays(lights, kRaysPerSun);
-    truth->smooth = make_smooth_lights(lights);
+    truth->suns = make_sun_rays(lights, kRaysPerSun, inputs.bake.between);
+    truth->smooth = make_smooth_lights(lights, inputs.bake.between);
     truth->other = true_light_of(inputs, lights);
     truth->points = truth_points(effort);
     return truth;

@@ -168,9 +168,10 @@ double truth_depths(const Knobs& knobs, TruthEffort effort) {
 PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
                        std::span<const TestLight> lights) {
     auto truth = std::make_unique<Truth>();
-    truth->quadrature = make_single_quadrature(
-        inputs.bake.scene, inputs.material,
-        static_cast<std::uint32_t>(truth_depths(inputs.knobs, effort)), lights);
+    truth->quadrature =
+        make_single_quadrature(inputs.bake.scene, inputs.material,
+                               static_cast<std::uint32_t>(truth_depths(inputs.knobs, effort)),
+                               lights, inputs.bake.between);
     return truth;
 }
 

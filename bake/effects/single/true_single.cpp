@@ -49,7 +49,10 @@ std::array<double, RayPacket::kSize> trace_node(const SingleQuadrature& q, const
             arrives += kLuminance[c] * static_cast<double>(node.weight[c]) *
                        std::exp(-q.medium.path.sigma_t[c] * length);
         }
-        light[lane] = static_cast<double>(entry.throughput) * eval_phase(q.phase, cosine) * arrives;
+        const glm::vec3 way{packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]};
+        light[lane] =
+            static_cast<double>(entry.throughput) * eval_phase(q.phase, cosine) * arrives *
+            let_through(q.suns.between, node.position + entries.distance[lane] * way, way);
     }
     return light;
 }
@@ -58,11 +61,12 @@ std::array<double, RayPacket::kSize> trace_node(const SingleQuadrature& q, const
 
 SingleQuadrature make_single_quadrature(const formats::Scene& scene, std::uint32_t material,
                                         std::uint32_t depth_samples,
-                                        std::span<const TestLight> lights) {
+                                        std::span<const TestLight> lights,
+                                        const DensitySpace* between) {
     constexpr std::uint32_t kRaysPerSun = 4;
     SingleQuadrature q{make_single_medium(scene, material, depth_samples),
                        make_phase_density(scene.materials[material].medium->phase),
-                       make_sun_rays(lights, kRaysPerSun),
+                       make_sun_rays(lights, kRaysPerSun, between),
                        make_direction_set(kCoarse),
                        {},
                        lights.size()};

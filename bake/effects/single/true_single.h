@@ -24,7 +24,8 @@ struct SingleQuadrature {
 /// `depth_samples`: along the inward normal. `material` must have a medium.
 SingleQuadrature make_single_quadrature(const formats::Scene& scene, std::uint32_t material,
                                         std::uint32_t depth_samples,
-                                        std::span<const TestLight> lights);
+                                        std::span<const TestLight> lights,
+                                        const DensitySpace* between = nullptr);
 
 /// Luminance that leaves along the normal at `point` by single scattering, without the exit's Ft
 /// (single/README.md, "Transport"). `point` must be of the medium's material. `traced` adds up.

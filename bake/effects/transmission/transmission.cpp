@@ -136,8 +136,9 @@ TwoEstimates see_lights_through(const StraightBody& body, const StraightTruth& t
         if (!(left > 0)) continue;
         for (const StraightExit& exit : found.exits) {
             add_light(truth, exit.direction,
-                      weight[exit.view] / left * luminance_of(exit, body.bands), random[exit.view],
-                      *estimate);
+                      weight[exit.view] / left * luminance_of(exit, body.bands) *
+                          let_through(truth.smooth.between, exit.origin, exit.direction),
+                      random[exit.view], *estimate);
         }
         if (truth.surfaces) {
             for (const StraightExit& exit : found.blocked) {
@@ -242,7 +243,7 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
     auto truth = std::make_unique<Truth>();
     truth->body = make_straight_body(inputs);
     truth->body.sky = &inputs.bake.rays;  // whatever the plan says of what stands before the light
-    truth->truth = {lights, make_smooth_lights(lights), truth_views(effort),
+    truth->truth = {lights, make_smooth_lights(lights, inputs.bake.between), truth_views(effort),
                     straight_terms(inputs.layout), true_light_of(inputs, lights)};
     return truth;
 }
