@@ -237,6 +237,11 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
         bake_rows(bake, before ? &*before : nullptr, subjects, knobs, context, extras, log);
     if (!rows) return std::move(rows).error();
     warn_of_models(bake, subjects, knobs, context, result.warnings);
+    if (light.shared) {
+        if (auto warning = describe_unsettled(*light.shared)) {
+            result.warnings.push_back(std::move(*warning));
+        }
+    }
     std::vector<formats::Openness> openness = bake_all_openness(bake, subjects, context, log);
     if (context.cancelled()) return interrupted();
     result.asset = pack_asset(bake.scene, layouts_of(bake.scene, subjects), std::move(rows->rows),

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "bake/accuracy/error_warnings.h"
 #include "bake/exchange/exchange_points.h"
 #include "bake/rows/medium_rows.h"
 
@@ -59,6 +60,17 @@ std::shared_ptr<const BounceLight> find_surface_light(const LightRequest& reques
                      [&](std::uint64_t& rays) {
                          return solve(request, inputs_for(request), Bounces::none, rays);
                      });
+}
+
+std::optional<formats::Diagnostic> describe_unsettled(const OtherLight& light) {
+    constexpr double kMost = 0.01;
+    const SolveReport& report = light.surfaces->report;
+    if (!(report.remaining > kMost)) return std::nullopt;
+    return formats::make_warning(
+        "", std::string(light.name),
+        "after " + std::to_string(report.bounces) + " bounces " + error_percent(report.remaining) +
+            " of the light between surfaces were still to come and are extrapolated",
+        "let the surfaces absorb more: in a closed room of albedo 1 light never ends");
 }
 
 }  // namespace opaline::bake

@@ -29,4 +29,8 @@ std::optional<OtherLight> find_shared_light(const LightRequest& request);
 /// sees one.
 std::shared_ptr<const BounceLight> find_surface_light(const LightRequest& request);
 
+/// A warning where bounces still were a hundredth of the light when the solve ended, as in closed
+/// rooms that hardly absorb: what follows is extrapolated.
+std::optional<formats::Diagnostic> describe_unsettled(const OtherLight& light);
+
 }  // namespace opaline::bake

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "bake/accuracy/check_model.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
@@ -69,6 +71,28 @@ TEST(BounceFurnace, RadianceOfAClosedBoxOfThinWallsIsEvenInsideAndOutside) {
             EXPECT_LT(off.rms, glossy ? 0.012 : 0.01) << inward;
             EXPECT_LT(std::abs(off.mean), glossy ? 0.008 : 0.005) << inward;
         }
+    }
+}
+
+// L_in = r L_in + t with r = .99, t = .01: every bounce has .99 of the one before. What 64 of them
+// leave is half of the light.
+TEST(BounceFurnace, ABoxThatKeepsItsLightShowsTheSkyAndSaysWhatIsExtrapolated) {
+    for (const float reflect : {0.99f, 0.5f}) {
+        formats::Scene box = tests::make_scene({tests::make_cube(3, true)});
+        box.materials[0].base_color = {1, 1, 1};
+        const float transmit = 1 - reflect;
+        box.materials[0].sheet = formats::Sheet{.reflect = {reflect, reflect, reflect},
+                                                .transmit = {transmit, transmit, transmit}};
+        const BakeResult baked =
+            tests::bake_scene(box, furnace_options({"sheet", "interreflection"}));
+        const Deviation off = deviation_from(1, tests::relight(baked.asset.view(), "white"));
+        EXPECT_LT(std::abs(off.mean), 0.02) << reflect;
+        EXPECT_EQ(std::ranges::count_if(baked.warnings,
+                                        [](const formats::Diagnostic& warning) {
+                                            return warning.fault.find("extrapolated") !=
+                                                   std::string::npos;
+                                        }),
+                  reflect > 0.9f ? 1 : 0);
     }
 }
 
