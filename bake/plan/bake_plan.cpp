@@ -19,6 +19,14 @@ std::size_t count_decisions(const EffectTable& effects, const PlanInput& input) 
     return count;
 }
 
+// Those whose key is `value`. Sorted by the key.
+template <class Value, class Key>
+std::span<const PlanEntry> equal_entries(std::span<const PlanEntry> plan, Value value, Key key) {
+    const auto first = std::ranges::lower_bound(plan, value, {}, key);
+    const auto last = std::ranges::upper_bound(plan, value, {}, key);
+    return {first, last};
+}
+
 }  // namespace
 
 std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts& facts) {
@@ -95,16 +103,12 @@ const PlanEntry* find_entry(std::span<const PlanEntry> plan, std::string_view na
 }
 
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, std::uint32_t material) {
-    const auto own =
-        std::ranges::equal_range(entries_of(plan, Subject::Kind::material), material, {},
-                                 [](const PlanEntry& e) { return e.subject.index; });
-    return {own.begin(), own.end()};
+    return equal_entries(entries_of(plan, Subject::Kind::material), material,
+                         [](const PlanEntry& e) { return e.subject.index; });
 }
 
 std::span<const PlanEntry> entries_of(std::span<const PlanEntry> plan, Subject::Kind kind) {
-    const auto own =
-        std::ranges::equal_range(plan, kind, {}, [](const PlanEntry& e) { return e.subject.kind; });
-    return {own.begin(), own.end()};
+    return equal_entries(plan, kind, [](const PlanEntry& e) { return e.subject.kind; });
 }
 
 bool is_on(std::span<const PlanEntry> plan, std::string_view name) {
