@@ -93,7 +93,8 @@ void bill_surface_light(const CostRequest& request, const CostedVolumes& volumes
 
 void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, Bill& bill) {
     if (volumes.empty()) return;
-    const auto& [layouts, works] = volumes;
+    const std::vector<VolumeLayout>& layouts = volumes.layouts;  // for clang 14's lambdas
+    const std::vector<VolumeWork>& works = volumes.works;
     const Knobs& knobs = request.knobs;
     const double receivers = request.facts.receivers;
     const CostInput input{knobs, request.facts.triangles, receivers};
