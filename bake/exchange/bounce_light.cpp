@@ -12,256 +12,9 @@
 #include "bake/exchange/bounce_rays.h"
 #include "bake/exchange/scatterers.h"
 #include "bake/exchange/site_light.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/exchange/solve_bounces.h"
 
 namespace opaline::bake {
-namespace {
-
-constexpr std::size_t kTexels = 6 * kBounceCubemap * kBounceCubemap;
-constexpr std::uint32_t kMostBounces = 64;
-// A bounce of less of the light than this is the last one, where what follows it is less as well.
-constexpr double kLeastShare = 1e-3;
-
-// Scatterers and what they make of light.
-struct Field {
-    const LightInputs& inputs;
-    std::span<const Scatterer> scatterers;
-    ScattererLight& light;
-
-    bool passes_light(std::size_t i) const {
-        return inputs.bake.scene.materials[scatterers[i].material].sheet.has_value();
-    }
-};
-
-// Plane by plane.
-void add_scaled(std::span<const float> from, const BandColour& factor, std::span<float> to) {
-    for (std::size_t k = 0; k < to.size(); ++k) {
-        to[k] += factor[k / kTexels] * from[k];
-    }
-}
-
-// What reaches a scatterer from others, on its side and, through a sheet, on the other one; and
-// what of others' radiosity crosses its medium to it, as the mean of the bands.
-struct Arrivals {
-    std::vector<NodeWeight> front, back, through;
-    BandColour of_through{};  // times `through`, by band
-};
-
-// Whether nothing of light in a body is absorbed, band by band.
-std::array<bool, 3> absorbs_nothing(const formats::Medium& medium) {
-    return {medium.sigma_a.r == 0, medium.sigma_a.g == 0, medium.sigma_a.b == 0};
-}
-
-// What crosses a medium straight may not be more than what enters and does not scatter: `scattered`
-// is exitance by irradiance 1 everywhere. Without absorption it is all of that, and the factor
-// makes up for the two's quadratures.
-BandColour share_of_crossing(const formats::Medium& medium, const BandColour& scattered,
-                             const std::array<double, 3>& all) {
-    constexpr double kMost = 2;
-    const double enters = 1 - fresnel_moments(double{medium.eta}).external;
-    const std::array<bool, 3> keeps_all = absorbs_nothing(medium);
-    BandColour share{};
-    for (std::size_t b = 0; b < share.size(); ++b) {
-        const double left = std::max(0.0, enters - double{scattered[b]});
-        const double fits = all[b] > 0 ? left / all[b] : 0;
-        share[b] = static_cast<float>(std::min(fits, keeps_all[b] ? kMost : 1.0));
-    }
-    return share;
-}
-
-// `scattered`: MediumAnswer::sum_of the scatterer's patch.
-void weigh_through(const Field& field, const BounceTree& tree, const CrossingViews& crossing,
-                   std::size_t i, const BandColour& scattered, Arrivals& arrivals,
-                   std::uint64_t& rays) {
-    const Scatterer& s = field.scatterers[i];
-    const std::vector<float> of_sky = field.light.crossing.row(i);
-    double sum = 0;
-    std::array<double, 3> by_band{}, all{};
-    for (std::size_t b = 0; b < all.size(); ++b) {
-        all[b] = double{even_share(
-            std::span(of_sky).subspan(b < field.light.bands ? b * kTexels : 0, kTexels))};
-        for (const SurfaceView& view : crossing.views) {
-            all[b] += double{view.weight[b]};
-        }
-    }
-    for (const SeenNode& seen : find_seen(field.inputs.bake.scene, field.inputs.bake.rays, tree,
-                                          crossing.views, crossing.solid_angle, rays)) {
-        std::array<float, 3> weight = crossing.views[seen.view].weight;
-        for (float& w : weight) {
-            w *= seen.share;
-        }
-        const float mean = (weight[0] + weight[1] + weight[2]) / 3;
-        if (!arrivals.through.empty() && arrivals.through.back().node == seen.node) {
-            arrivals.through.back().weight += mean;
-        } else {
-            arrivals.through.push_back({seen.node, mean});
-        }
-        sum += double{mean};
-        for (std::size_t b = 0; b < by_band.size(); ++b) {
-            by_band[b] += double{weight[b]};
-        }
-    }
-    const formats::Medium& medium = *field.inputs.bake.scene.materials[s.material].medium;
-    const BandColour share = share_of_crossing(medium, scattered, all);
-    const std::array<float, 3> albedo{s.albedo.diffuse.r, s.albedo.diffuse.g, s.albedo.diffuse.b};
-    BandColour sky_share{};
-    for (std::size_t b = 0; b < by_band.size(); ++b) {
-        arrivals.of_through[b] =
-            sum > 0 ? albedo[b] * share[b] * static_cast<float>(by_band[b] / sum) : 0;
-        sky_share[b] = albedo[b] * share[b];
-    }
-    if (field.light.bands == 1) {
-        const auto grey = [](const BandColour& c) {
-            return BandColour{formats::luminance({c[0], c[1], c[2]})};
-        };
-        arrivals.of_through = grey(arrivals.of_through);
-        sky_share = grey(sky_share);
-    }
-    std::vector<float> to = field.light.emitted.row(i);
-    add_scaled(of_sky, sky_share, to);
-    field.light.emitted.set(i, to);
-}
-
-std::vector<Arrivals> weigh_scatterers(const Field& field, std::span<const MediumRows> media,
-                                       const BounceTree& tree, std::uint64_t& rays) {
-    std::vector<Arrivals> arrivals(field.scatterers.size());
-    const BounceGrid grid = make_bounce_grid(kRaysOfScatterer);
-    std::vector<BandColour> scattered(arrivals.size());
-    std::vector<const CrossingViews*> through(arrivals.size());
-    for (std::size_t k = 0; k < media.size(); ++k) {
-        const MediumAnswer& answer = field.light.answers[k];
-        for (std::size_t m = 0; m < media[k].through.size(); ++m) {
-            scattered[answer.members[m]] = answer.sum_of(answer.patch[m]);
-            through[answer.members[m]] = &media[k].through[m];
-        }
-    }
-    constexpr std::size_t kBlock = 16;
-    // The sky is known by many more rays than others are: what these rays meet takes what the sky
-    // leaves, so that all shares add up to 1 and no bounce wins or loses light.
-    const auto weigh = [&](const Receiver& at, float openness, std::vector<NodeWeight>& weights) {
-        const BounceGather gathered =
-            weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
-                          field.inputs.knobs.seed, weights, LookUp::nearest);
-        for (NodeWeight& w : weights) {
-            w.weight *= (1 - openness) / gathered.met;
-        }
-        return gathered.rays;
-    };
-    for_each_block_in_order(
-        arrivals.size(), kBlock, field.inputs.context,
-        [&](Range range) {
-            std::uint64_t traced = 0;
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                const Scatterer& s = field.scatterers[i];
-                traced += weigh(s.outside, s.openness, arrivals[i].front);
-                if (field.passes_light(i)) {
-                    traced += weigh(s.beyond, field.light.open_beyond[i], arrivals[i].back);
-                }
-                if (through[i] != nullptr) {
-                    weigh_through(field, tree, *through[i], i, scattered[i], arrivals[i], traced);
-                }
-            }
-            return traced;
-        },
-        [&](Range, std::uint64_t traced) { rays += traced; });
-    return arrivals;
-}
-
-// The bounces after a last one, by which rows changed.
-void add_rest(const SeriesEnd& series, const CodedRows& before, const Context& context,
-              CodedRows& rows) {
-    constexpr std::size_t kBlock = 64;
-    for_each_block_in_order(
-        rows.count(), kBlock, context,
-        [&](Range range) {
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                std::vector<float> to = rows.row(i);
-                const std::vector<float> from = before.row(i);
-                for (std::size_t k = 0; k < to.size(); ++k) {
-                    to[k] += static_cast<float>(series.rest(k / kTexels)) * (to[k] - from[k]);
-                }
-                rows.set(i, to);
-            }
-            return 0;
-        },
-        [](Range, int) {});
-}
-
-// Of all rows under an even sky, by band.
-std::vector<double> sums_of_even(const CodedRows& rows) {
-    std::vector<double> sums(rows.size() / kTexels);
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-        for (std::size_t k = 0; k < rows.size(); k += kTexels / 6) {
-            sums[k / kTexels] += static_cast<double>(std::abs(rows.value(i, k)));
-        }
-    }
-    return sums;
-}
-
-// B = B_0 + rho gather(B), bounce by bounce: the tree's rows become all light that leaves. The last
-// bounce stands for those that would follow it as well.
-SolveReport add_bounces(const Field& field, std::span<const Arrivals> arrivals, BounceTree& tree) {
-    const std::size_t size = field.light.row_size();
-    CodedRows leaving = field.light.emitted;
-    CodedRows arriving = field.light.answers.empty() ? CodedRows() : leaving;  // of media
-    const auto is_medium = [&](std::size_t i) {
-        return field.inputs.layouts[field.scatterers[i].material].translucent;
-    };
-    // What neighbours see is mostly the same and still in the cache.
-    const std::vector<std::uint32_t> order = tree.neighbours();
-    SeriesEnd series;
-    series.add(sums_of_even(leaving));
-    SolveReport report;
-    for (bool is_last = false; !is_last && !field.inputs.context.cancelled(); ++report.bounces) {
-        report.remaining = series.remaining();
-        report.ratio = series.largest_ratio();
-        is_last = series.is_settled(kLeastShare) || report.bounces + 1 == kMostBounces;
-        const CodedRows before = is_last ? leaving : CodedRows();
-        tree.set_rows(leaving, field.inputs.context);
-        constexpr std::size_t kBlock = 64;
-        for_each_block_in_order(
-            arrivals.size(), kBlock, field.inputs.context,
-            [&](Range range) {
-                std::vector<float> row(size);
-                for (const std::uint32_t i :
-                     std::span(order).subspan(range.begin, range.end - range.begin)) {
-                    std::vector<float> to = field.light.emitted.row(i);
-                    const auto add = [&](std::span<const NodeWeight> from,
-                                         const BandColour& share) {
-                        if (from.empty()) return;
-                        std::ranges::fill(row, 0.0f);
-                        add_node_rows(tree, from, row);
-                        add_scaled(row, share, to);
-                    };
-                    if (is_medium(i)) {
-                        std::ranges::fill(row, 0.0f);
-                        add_node_rows(tree, arrivals[i].front, row);
-                        arriving.set(i, row);
-                    } else {
-                        add(arrivals[i].front, field.light.reflect[i]);
-                        add(arrivals[i].back, field.light.transmit[i]);
-                    }
-                    add(arrivals[i].through, arrivals[i].of_through);
-                    leaving.set(i, to);
-                }
-                return 0;
-            },
-            [](Range, int) {});
-        for (const MediumAnswer& answer : field.light.answers) {
-            add_answer(answer, field.scatterers, arriving, field.light.bands, field.inputs.context,
-                       leaving);
-        }
-        if (is_last) {
-            add_rest(series, before, field.inputs.context, leaving);
-        }
-        series.add(sums_of_even(leaving));
-    }
-    tree.set_rows(leaving, field.inputs.context);
-    return report;
-}
-
-}  // namespace
-
 std::uint32_t count_rays_of_site(std::uint32_t of_receiver) {
     constexpr double kShare = 0.25;
     return count_bounce_rays(kShare * of_receiver);
@@ -281,7 +34,6 @@ std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, Exc
     const bool is_coloured =
         bounces == Bounces::none || std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
     ScattererLight own = light_scatterers(inputs, points, media, is_coloured ? 3 : 1, rays);
-    const Field field{inputs, scatterers, own};
     auto light = std::make_shared<BounceLight>(
         BounceLight{.scene = inputs.bake.scene,
                     .rays = inputs.bake.rays,
@@ -289,22 +41,18 @@ std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, Exc
                     .bands = own.bands,
                     .seed = inputs.knobs.seed,
                     .layouts = {inputs.layouts.begin(), inputs.layouts.end()},
-                    .tree = BounceTree(scatterers, inputs.layouts.size(), field.light.row_size()),
+                    .tree = BounceTree(scatterers, inputs.layouts.size(), own.row_size()),
                     .of_site = make_bounce_grid(count_rays_of_site(count)),
                     .of_receiver = make_cut_grid(count),
                     .of_averaged = make_bounce_grid(kRaysOfAveraged),
                     .sites = {},
                     .site_rows = {}});
     if (bounces == Bounces::all) {
-        const std::vector<Arrivals> arrivals = weigh_scatterers(field, media, light->tree, rays);
-        light->report = add_bounces(field, arrivals, light->tree);
+        light->report = add_bounces(inputs, scatterers, media, own, light->tree, rays);
         light_sites(inputs, *light, rays);
-        return light;
+    } else {
+        set_unbounced(inputs, scatterers, media, own, light->tree, rays);
     }
-    if (own.crossing.count() > 0) {
-        weigh_scatterers(field, media, light->tree, rays);  // adds what crosses media to `emitted`
-    }
-    light->tree.set_rows(own.emitted, inputs.context);
     return light;
 }
 

@@ -1,6 +1,7 @@
 #include "bake/exchange/medium_answer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <glm/glm.hpp>
 #include <utility>
 
@@ -48,10 +49,18 @@ MediumAnswer cut_medium(std::span<const Scatterer> scatterers, std::span<const f
     std::vector<BodyPoint> inside;
     for (const std::uint32_t i : answer.members) {
         inside.push_back(scatterers[i].inside);
-        answer.area.push_back(cells[i]);
     }
     answer.patch = cut_into_patches(inside, kMostPatches);
     answer.patches = 1 + std::ranges::max(answer.patch);
+    // Cells of scatterers at one place have no area.
+    constexpr float kNoArea = 1e-30f;
+    std::vector<float> area(answer.patches);
+    for (std::size_t m = 0; m < answer.members.size(); ++m) {
+        area[answer.patch[m]] += std::max(cells[answer.members[m]], kNoArea);
+    }
+    for (std::size_t m = 0; m < answer.members.size(); ++m) {
+        answer.part.push_back(std::max(cells[answer.members[m]], kNoArea) / area[answer.patch[m]]);
+    }
     answer.share.assign(std::size_t{answer.patches} * answer.patches, {});
     return answer;
 }
@@ -59,6 +68,7 @@ MediumAnswer cut_medium(std::span<const Scatterer> scatterers, std::span<const f
 void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers,
                 std::span<const std::vector<float>> rows, MediumAnswer& answer) {
     if (inputs.context.cancelled() || rows.empty()) return;
+    assert(rows.size() == answer.members.size());
     const std::uint32_t material = scatterers[answer.members.front()].material;
     const RowLayout& layout = inputs.layouts[material];
     const float eta = inputs.bake.scene.materials[material].medium->eta;
@@ -92,17 +102,13 @@ void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterer
                 const CodedRows& irradiance, std::uint32_t bands, const Context& context,
                 CodedRows& radiosity) {
     const std::size_t size = irradiance.size(), patches = answer.patches;
-    std::vector<float> mean(patches * size), area(patches);
-    for (std::size_t m = 0; m < answer.members.size(); ++m) {
-        area[answer.patch[m]] += answer.area[m];
-    }
+    assert(size == bands * kPlane && radiosity.size() == size);
+    std::vector<float> mean(patches * size);
     const auto row_of = [&](std::vector<float>& rows, std::size_t patch) {
         return std::span(rows).subspan(patch * size, size);
     };
     for (std::size_t m = 0; m < answer.members.size(); ++m) {
-        const std::uint32_t p = answer.patch[m];
-        irradiance.add(answer.members[m], area[p] > 0 ? answer.area[m] / area[p] : 0,
-                       row_of(mean, p));
+        irradiance.add(answer.members[m], answer.part[m], row_of(mean, answer.patch[m]));
     }
     std::vector<float> others(patches * size);
     for_each_block_in_order(

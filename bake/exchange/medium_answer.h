@@ -23,7 +23,7 @@ using BandColour = std::array<float, 3>;
 struct MediumAnswer {
     std::vector<std::uint32_t> members;  ///< scatterers on the medium
     std::vector<std::uint32_t> patch;    ///< of each of them
-    std::vector<float> area;             ///< of each of them [m^2]
+    std::vector<float> part;             ///< of each of them: its share of its patch's area
     std::uint32_t patches = 0;
     /// Exitance of patch `to` by irradiance 1 on patch `from`, but for the base colour: to *
     /// patches + from. Of what scatters; what crosses the body straight is no part of it.

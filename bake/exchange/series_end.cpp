@@ -18,10 +18,6 @@ double SeriesEnd::ratio(std::size_t band) const {
     return before_[band] > 0 ? std::clamp(last_[band] / before_[band], 0.0, kLargestRatio) : 0;
 }
 
-double SeriesEnd::largest_ratio() const {
-    return std::max({ratio(0), ratio(1), ratio(2)});
-}
-
 double SeriesEnd::remaining() const {
     double most = 0;
     for (std::size_t b = 0; b < all_.size(); ++b) {

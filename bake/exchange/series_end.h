@@ -11,7 +11,6 @@ namespace opaline::bake {
 struct SolveReport {
     std::uint32_t bounces = 0;  ///< that were followed
     double remaining = 0;       ///< share of all light that comes after them, by extrapolation
-    double ratio = 0;           ///< of a bounce to the one before, at the end; of the largest band
 };
 
 /// The end of a series of bounces. After some of them each is the one before times the same ratio
@@ -28,7 +27,6 @@ class SeriesEnd {
     /// What comes after a bounce, in its multiples.
     double rest(std::size_t band) const { return ratio(band) / (1 - ratio(band)); }
     double ratio(std::size_t band) const;
-    double largest_ratio() const;
     /// Share of all light that comes after the next bounce; 1 where no bounce was added yet.
     double remaining() const;
     /// Whether the next bounce has at most `least` of what was emitted, and what follows it at most

@@ -69,7 +69,7 @@ std::optional<formats::Diagnostic> describe_unsettled(const OtherLight& light) {
     return formats::make_warning(
         "", std::string(light.name),
         "after " + std::to_string(report.bounces) + " bounces " + error_percent(report.remaining) +
-            " of the light between surfaces were still to come and are extrapolated",
+            " of the light between surfaces was still to come and is extrapolated",
         "let the surfaces absorb more: in a closed room of albedo 1 light never ends");
 }
 

@@ -32,7 +32,7 @@ TEST(SeriesEnd, OfBandsIsThatOfTheBrightest) {
     SeriesEnd series;
     series.add(std::array<double, 3>{1, 1, 0});
     series.add(std::array<double, 3>{1.5, 1.9, 0});
-    EXPECT_NEAR(series.largest_ratio(), 0.9, 1e-12);
+    EXPECT_NEAR(series.remaining(), 0.9 * 0.9 * 0.9, 1e-12);
     EXPECT_NEAR(series.rest(0), 1, 1e-12);
     EXPECT_EQ(series.rest(2), 0);
 }
