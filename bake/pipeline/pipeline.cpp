@@ -11,21 +11,19 @@
 #include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/encode/pack_asset.h"
-#include "bake/encode/row_sink.h"
 #include "bake/pipeline/emitter_stages.h"
 #include "bake/pipeline/filtered_textures.h"
 #include "bake/pipeline/layer_stages.h"
 #include "bake/pipeline/plan_scene.h"
 #include "bake/pipeline/provenance.h"
+#include "bake/pipeline/row_stages.h"
 #include "bake/pipeline/shared_light.h"
 #include "bake/pipeline/volume_stages.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/rows/gather_rows.h"
-#include "bake/rows/shared_batches.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/orient_bodies.h"
-#include "bake/transport/bake_openness.h"
 #include "bake/transport/hidden_receivers.h"
 #include "bake/transport/touching_triangles.h"
 #include "bake/volumes/place_nodes.h"
@@ -44,100 +42,18 @@ std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const RayS
         scene, replace_hidden_receivers(rays, scene, std::move(vertices), context), inside);
 }
 
-// What the rows of a set are for, in the words of comparisons: "multiple+single: rows".
-std::string group_of(std::span<const Gatherer> gatherers) {
-    std::string names;
-    for (const Gatherer& g : gatherers) {
-        names += (names.empty() ? "" : "+") + std::string(g.effect->name);
-    }
-    return names.empty() ? kPreparationGroup : names + ": rows";
-}
-
-// The rows of all receivers, in their order; one stage of the report for each set.
-formats::Result<GatheredRows> bake_rows(const BakeInputs& bake, const VolumesBefore* volumes,
-                                        std::span<const SubjectState> subjects, const Knobs& knobs,
-                                        const Context& context, const BakeExtras& extras,
-                                        StageLog& log) {
-    std::vector<float> errors;
-    RowSink sink =
-        make_row_sink(make_row_encoder(knobs.cubemap_size, knobs.coefficients, knobs.code_bits));
-    const std::uint32_t total = count_receivers(bake.receivers);
-    SharedBatches batches(bake, subjects, knobs, context);
-    for (std::size_t s = 0; s < bake.receivers.size(); ++s) {
-        const ReceiverSet& set = bake.receivers[s];
-        const SubjectState* const subject =
-            set.size() == 0 ? nullptr : &state_of(subjects, set.material);
-        if (subject == nullptr) continue;
-        std::vector<Gatherer> gatherers = make_gatherers(bake, *subject, knobs, context);
-        std::string group = group_of(gatherers);
-        RowJob job{set, subject->layout, sink.encoder, total};
-        job.measures_errors = extras.receiver_errors;
-        job.volumes = volumes;
-        job.material = &bake.scene.materials[set.material];
-        GatheredRows gathered =
-            run_stage(log, "rows of '" + bake.scene.primitives[set.primitive].name + "'",
-                      std::move(group), [&](std::uint64_t& rays) {
-                          const SharedBatches::Found shared = batches.find(s, rays);
-                          job.shared = shared.gatherers;
-                          job.place = shared.place;
-                          return gather_rows(job, std::move(gatherers), context, rays);
-                      });
-        formats::SparseRows& part = gathered.rows;
-        if (context.cancelled()) break;
-        const RowLayout& layout = subject->layout;
-        if (auto status = require_finite(part, layout.terms(), layout.bands(), log.back().name);
-            !status) {
-            return std::move(status).error();
-        }
-        if (part.row_offset.size() != layout.terms() * set.size() + 1 ||
-            !take_rows(sink, std::move(part))) {
-            return formats::make_error(formats::ErrorKind::resource, "", "transport",
-                                       "more than 2^32 coefficients do not fit into one file",
-                                       "lower --coefficients, or split the scene");
-        }
-        errors.insert(errors.end(), gathered.receiver_error.begin(), gathered.receiver_error.end());
-    }
-    return GatheredRows{std::move(sink.rows), std::move(errors)};
-}
-
-// Of all receivers; empty where nothing is glossy.
-std::vector<formats::Openness> bake_all_openness(const BakeInputs& bake,
-                                                 std::span<const SubjectState> subjects,
-                                                 const Context& context, StageLog& log) {
-    std::vector<formats::Openness> openness;
-    if (std::none_of(subjects.begin(), subjects.end(),
-                     [](const SubjectState& s) { return s.layout.mirrors; })) {
-        return openness;
-    }
-    return run_stage(log, "openness", "openness", [&](std::uint64_t& traced) {
-        const DirectionSet directions = make_sparse_direction_set(kOpennessCubemap, 0);
-        for (const ReceiverSet& set : bake.receivers) {
-            if (set.size() > 0 && state_of(subjects, set.material).layout.mirrors) {
-                const bool occluded = state_of(subjects, set.material).layout.occluded;
-                const auto part = bake_openness(occluded ? bake.rays : bake.sky, directions,
-                                                set.outside, context, traced);
-                openness.insert(openness.end(), part.begin(), part.end());
-            }
-            openness.resize(set.first + set.size());
-        }
-        return std::move(openness);
-    });
-}
-
 // The plan after the studies: rules decide again with their findings.
 void amend_plan(const BakeInputs& bake, std::span<const SubjectState> subjects, const Knobs& knobs,
-                const Context& context, std::vector<PlanEntry>& plan) {
-    const auto amend = [&](PlanEntry& entry) {
-        const auto e =
-            static_cast<std::size_t>(&bake.effects[entry.effect] - bake.effects.effects.data());
-        const SubjectState& subject = state_of(subjects, entry.subject.index);
-        const DecisionRule& rule = rule_of(bake.effects, entry);
-        if (rule.amend != nullptr && subject.effects[e].study != nullptr) {
-            rule.amend(inputs_of(bake, subject, e, knobs, context), entry);
+                std::vector<PlanEntry>& plan) {
+    std::vector<const Prepared*> studies;
+    for (std::uint32_t m = 0; m < bake.scene.materials.size(); ++m) {
+        for (std::size_t e = 0; e < bake.effects.effects.size(); ++e) {
+            const bool is_subject = bake.facts.material[m].receivers > 0;
+            studies.push_back(is_subject ? state_of(subjects, m).effects[e].study.get() : nullptr);
         }
-    };
+    }
     replace_entries(Subject::Kind::material,
-                    plan_bake(bake.effects, bake.scene, bake.facts, knobs, amend), plan);
+                    plan_bake(bake.effects, bake.scene, bake.facts, knobs, studies), plan);
 }
 
 void warn_of_models(const BakeInputs& bake, std::span<const SubjectState> subjects,
@@ -194,7 +110,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     }
     subjects = begin_subjects(unlit, result.plan, knobs);
     run_step(Step::study, unlit, knobs, context, subjects, log);
-    amend_plan(unlit, subjects, knobs, context, result.plan);
+    amend_plan(unlit, subjects, knobs, result.plan);
     settle_subjects(unlit, result.plan, knobs, subjects);
     knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
@@ -216,7 +132,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     if (knobs.error_target > 0) {
         result.accuracy.emplace();
         knobs = choose_knobs(bake, knobs, context, {subjects, lights, log, *result.accuracy});
-        amend_plan(bake, subjects, knobs, context, result.plan);
+        amend_plan(bake, subjects, knobs, result.plan);
         if (!planned.empty()) {
             volumes.emplace(bake_and_measure(stages, knobs, context, log));
             if (!*volumes) return std::move(*volumes).error();
@@ -233,8 +149,8 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
                   : std::nullopt;
     run_step(Step::prepare, bake, knobs, context, subjects, log);
     if (context.cancelled()) return interrupted();
-    formats::Result<GatheredRows> rows =
-        bake_rows(bake, before ? &*before : nullptr, subjects, knobs, context, extras, log);
+    formats::Result<GatheredRows> rows = bake_rows(bake, before ? &*before : nullptr, subjects,
+                                                   knobs, extras.receiver_errors, context, log);
     if (!rows) return std::move(rows).error();
     warn_of_models(bake, subjects, knobs, context, result.warnings);
     if (light.shared) {

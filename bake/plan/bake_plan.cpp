@@ -43,7 +43,8 @@ std::vector<Subject> list_subjects(const formats::Scene& scene, const SceneFacts
 
 std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
                                  const SceneFacts& facts, const Knobs& knobs,
-                                 const AmendEntry& amend) {
+                                 std::span<const Prepared* const> studies) {
+    assert(studies.empty() || studies.size() == scene.materials.size() * effects.effects.size());
     std::vector<PlanEntry> plan;
     for (const Subject& subject : list_subjects(scene, facts)) {
         PlanInput input{scene.materials[subject.index], facts.material[subject.index], knobs};
@@ -53,13 +54,15 @@ std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scen
                                 std::uint8_t number) {
             input.earlier = decisions;
             if (!rule.concerns(input)) return;
+            const auto e = static_cast<std::size_t>(&effect - effects.effects.data());
+            input.study =
+                studies.empty() ? nullptr : studies[subject.index * effects.effects.size() + e];
             PlanEntry entry = rule.decide(input);
             entry.effect = effect.id;
             entry.rule = number;
             entry.name = rule.name;
             entry.subject = subject;
             tell_forced(entry);
-            if (amend) amend(entry);
             decisions.push_back(std::move(entry));
         };
         for_each_rule(effects, decide);

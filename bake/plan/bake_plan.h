@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +11,8 @@
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+struct Prepared;  // plan_input.h
 
 /// The subject of a decision. A material represents its surfaces and the medium inside. A whole
 /// plan has the decisions on materials first, then the others in the order of their kinds.
@@ -50,15 +51,13 @@ struct PlanEntry {
     std::uint64_t saved_bytes = 0;      ///< the same; of the rows in the file
 };
 
-/// Findings of a decision's study; null: none.
-using AmendEntry = std::function<void(PlanEntry& entry)>;
-
-/// Decides what to simulate of materials, from the scene alone: traces nothing. Subject by subject,
-/// and for each in the order of the effects and their rules: later ones see what `amend` made of
-/// earlier ones. `facts`: inspect_scene's.
+/// Decides what to simulate of materials, from the scene and from what effects found when they
+/// studied it: traces nothing. Subject by subject, and for each in the order of the effects and
+/// their rules: later ones see earlier ones. `facts`: inspect_scene's. `studies`: material *
+/// effects + effect, null where there is none; empty: nothing is studied yet.
 std::vector<PlanEntry> plan_bake(const EffectTable& effects, const formats::Scene& scene,
                                  const SceneFacts& facts, const Knobs& knobs,
-                                 const AmendEntry& amend = {});
+                                 std::span<const Prepared* const> studies = {});
 
 /// Largest known relative RMS error of a plan's models over its subjects.
 double find_model_error(std::span<const PlanEntry> plan);

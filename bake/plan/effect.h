@@ -23,10 +23,6 @@
 
 namespace opaline::bake {
 
-/// State that an effect keeps between its functions; its type is private to the effect.
-struct Prepared {
-    virtual ~Prepared() = default;
-};
 using PreparedPtr = std::unique_ptr<Prepared>;
 
 struct EffectInputs;
@@ -35,12 +31,11 @@ struct EffectInputs;
 struct DecisionRule {
     std::string_view name;  ///< that of the effect, or effect.part
     bool (*concerns)(const PlanInput& input);
-    /// Everything but effect, rule, name and subject. Traces nothing.
+    /// Everything but effect, rule, name and subject. Traces nothing. Asked again once the effect
+    /// has studied the subject (PlanInput::study).
     PlanEntry (*decide)(const PlanInput& input);
     /// What the decision means to the subject's rows.
     void (*lay_out)(const PlanEntry& entry, RowLayout& layout);
-    /// Completes the decision once the effect has studied the subject; rules after it follow.
-    void (*amend)(const EffectInputs& inputs, PlanEntry& entry) = nullptr;
     /// Warnings where knobs contradict the decision.
     void (*warn)(const PlanInput& input, const PlanEntry& entry,
                  std::vector<formats::Diagnostic>& warnings) = nullptr;
@@ -146,8 +141,8 @@ struct LightInputs {
     const BakeInputs& bake;  ///< without BakeInputs::light
     const Knobs& knobs;
     const Context& context;
-    std::span<const RowLayout> layouts;  ///< by material
-    std::vector<std::uint8_t> acts;      ///< by material: whether the effect does
+    std::span<const RowLayout> layouts;     ///< by material
+    std::vector<std::uint8_t> acts;         ///< by material: whether the effect does
     std::uint32_t rays_of_receiver = 0;     ///< to other surfaces, as the effect asks for
     std::span<const Receiver> onlookers{};  ///< places that see surfaces, besides receivers
 };

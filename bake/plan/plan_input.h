@@ -17,6 +17,11 @@ inline constexpr double kLeastBound = 1.0 / 512;
 /// together leave out at most a quarter.
 double least_bound(const Knobs& knobs, std::size_t decisions);
 
+/// State that an effect keeps between its functions; its type is private to the effect.
+struct Prepared {
+    virtual ~Prepared() = default;
+};
+
 /// What a rule decides from.
 struct PlanInput {
     const formats::Material& material;
@@ -24,6 +29,7 @@ struct PlanInput {
     const Knobs& knobs;
     double least_bound = kLeastBound;      ///< of as many decisions as concern the subject
     std::span<const PlanEntry> earlier{};  ///< decisions on this subject so far
+    const Prepared* study = nullptr;       ///< the effect's own, of this subject; null: none yet
 };
 
 /// Whether an effect of this bound is simulated. `forced`: its bound is too small, but

@@ -56,6 +56,23 @@ class Rooms(unittest.TestCase):
         self.assertEqual(self.check("bake/low\nbake/high\nbake/gone", self.TREE)[0], 1)
 
 
+class Callbacks(unittest.TestCase):
+    def check(self, declaration, user="bake/high/b.cpp"):
+        return run("check_callbacks.py", {"bake/low/a.h": declaration, user: '#include "bake/low/a.h"\n'})
+
+    def test_function_that_another_room_passes_is_found(self):
+        code, output = self.check("int f(const std::function<bool(int)>& is_enough);")
+        self.assertEqual(code, 1)
+        self.assertIn("bake/low/a.h:1: passes a function to another room (bake/high/b.cpp includes it)", output)
+
+    def test_functions_of_one_room_are_its_own(self):
+        self.assertEqual(self.check("int f(std::function<bool(int)> g);", "bake/low/b.cpp")[0], 0)
+
+    def test_progress_and_mathematics_are_accepted(self):
+        self.assertEqual(self.check("std::function<void(const Progress&)> on_progress;\n"
+                                    "double f(const std::function<double(double)>& p);")[0], 0)
+
+
 class OwnHeader(unittest.TestCase):
     def check(self, source):
         return run("check_own_header.py", {"bake/a.h": "", "bake/b.h": "", "bake/a.cpp": source, "bake/main.cpp": ""}, "bake")[0]

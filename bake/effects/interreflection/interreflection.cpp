@@ -95,7 +95,7 @@ constexpr std::array<DecisionRule, 2> kRules{
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.coloured = entry.on && entry.has_bands;
       },
-      nullptr, nullptr, formats::TermSet::interreflection},
+      nullptr, formats::TermSet::interreflection},
      {"interreflection.textures", has_textures, decide_textures,
       [](const PlanEntry& entry, RowLayout& layout) { layout.filtered = entry.on; }}}};
 constexpr std::array<const KnobSpec*, 1> kKnobs{&kBounceRays};

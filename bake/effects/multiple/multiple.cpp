@@ -86,8 +86,12 @@ const MediumProfile& profile_of(const EffectState& state) {
     return static_cast<const Studied&>(*state.study).profile;
 }
 
+const ModelChoice& choice_of(const Prepared& study) {
+    return static_cast<const Studied&>(study).choice;
+}
+
 MultipleModel model_of(const EffectState& state) {
-    return static_cast<const Studied&>(*state.study).choice.model;
+    return choice_of(*state.study).model;
 }
 
 PreparedPtr study(const EffectInputs& inputs, std::uint64_t& rays) {
@@ -254,14 +258,20 @@ void warn_of_model(const EffectInputs& inputs, std::vector<formats::Diagnostic>&
 constexpr std::array<DecisionRule, 4> kRules{
     {{"multiple", has_medium, decide_multiple, lay_out},
      {"multiple.layers", has_inner_media, decide_layers, lay_out_layers},
-     {"multiple.model", has_medium, decide_model, lay_out_model,
-      [](const EffectInputs& inputs, PlanEntry& entry) {
-          describe_choice(static_cast<const Studied&>(*inputs.own.study).choice, entry);
-      }},
-     {"multiple.view", has_medium, decide_views, lay_out_views,
-      [](const EffectInputs& inputs, PlanEntry& entry) {
-          amend_views(static_cast<const Studied&>(*inputs.own.study).choice.views, inputs, entry);
-      }}}};
+     {"multiple.model", has_medium,
+      [](const PlanInput& input) {
+          PlanEntry entry = decide_model(input);
+          if (input.study != nullptr) describe_choice(choice_of(*input.study), entry);
+          return entry;
+      },
+      lay_out_model},
+     {"multiple.view", has_medium,
+      [](const PlanInput& input) {
+          PlanEntry entry = decide_views(input);
+          if (input.study != nullptr) amend_views(choice_of(*input.study).views, input, entry);
+          return entry;
+      },
+      lay_out_views}}};
 
 }  // namespace
 

@@ -200,16 +200,16 @@ bool measures_views(const Knobs& knobs) {
            whole(knobs, kViewTerms) == 0 && !knobs.separate_terms;
 }
 
-void amend_views(const ModelError& measured, const EffectInputs& inputs, PlanEntry& entry) {
+void amend_views(const ModelError& measured, const PlanInput& input, PlanEntry& entry) {
     if (measured.receivers == 0) return;
-    const MaterialFacts& body = inputs.bake.facts.material[inputs.material];
+    const MaterialFacts& body = input.subject;
     const bool is_known = body.has_thickness();
     const double one =
-        std::max(measured.error, is_known ? one_view_error(inputs.medium(), body) : 0.0);
+        std::max(measured.error, is_known ? one_view_error(*input.material.medium, body) : 0.0);
     // What four leave is too small a difference to be measured so.
-    const double four = is_known ? four_views_error(inputs.medium(), body) : 0;
-    const std::uint32_t rows = rows_for(four, inputs.knobs);
-    if (one > allowed_view_error(inputs.knobs) || rows == 9) {
+    const double four = is_known ? four_views_error(*input.material.medium, body) : 0;
+    const std::uint32_t rows = rows_for(four, input.knobs);
+    if (one > allowed_view_error(input.knobs) || rows == 9) {
         take_views(one, four, rows, entry);
     } else {
         entry.on = false;

@@ -28,6 +28,6 @@ bool measures_views(const Knobs& knobs);
 
 /// The decision once the errors are measured; the estimate counts where it is larger. Open bodies
 /// get rows by view as well then.
-void amend_views(const ModelError& measured, const EffectInputs& inputs, PlanEntry& entry);
+void amend_views(const ModelError& measured, const PlanInput& input, PlanEntry& entry);
 
 }  // namespace opaline::bake

@@ -243,7 +243,7 @@ constexpr std::array<DecisionRule, 2> kRules{
                                  ? std::max(layout.harmonics, entry.terms)
                                  : layout.harmonics;
       },
-      nullptr, warn_of_terms}}};
+      warn_of_terms}}};
 
 }  // namespace
 

@@ -185,12 +185,12 @@ constexpr std::array<DecisionRule, 2> kRules{
           layout.constant = layout.constant || entry.on;
           layout.fills_crossed = !entry.on && entry.all_orders;
       },
-      nullptr, nullptr, formats::TermSet::unscattered},
+      nullptr, formats::TermSet::unscattered},
      {"transmission.view", has_medium, decide_straight_views,
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.straight_harmonics = entry.on ? entry.terms : 0;
       },
-      nullptr, warn_of_reach}}};
+      warn_of_reach}}};
 constexpr std::array<const KnobSpec*, 2> kKnobs{&kStraightViews, &kStraightTerms};
 
 struct Body : Prepared {
