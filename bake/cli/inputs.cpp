@@ -49,7 +49,9 @@ void add_clouds(const formats::MediaFile& media, formats::CloudDetail detail,
 void add_media(const formats::MediaFile& media, double metres_per_unit, formats::CloudDetail detail,
                formats::ImportedScene& imported) {
     fill_materials(media, imported);
-    join(require(formats::load_volumes(media, metres_per_unit, imported.scene)), imported);
+    join(
+        require(formats::load_volumes(media, metres_per_unit, imported.scene, {}, &imported.notes)),
+        imported);
     add_clouds(media, detail, imported);
 }
 

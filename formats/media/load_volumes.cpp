@@ -34,9 +34,15 @@ void include(Bounds& bounds, const SparseGrid<float>& grid) {
     }
 }
 
+// What is said of a file that is read: warnings, and lines that call for nothing.
+struct Findings {
+    std::vector<Diagnostic> warnings;
+    std::vector<std::string> notes;
+};
+
 // One line that says which grids of the file the entry does not use.
-void warn_of_unused(const VolumeEntry& entry, const std::filesystem::path& file,
-                    std::vector<std::string> unread, std::vector<Diagnostic>& warnings) {
+void note_unused(const VolumeEntry& entry, const std::filesystem::path& file,
+                 std::vector<std::string> unread, std::vector<std::string>& notes) {
     std::erase_if(unread, [&](const std::string& name) {
         return name == entry.albedo_grid || name == entry.emission || name == entry.temperature;
     });
@@ -45,15 +51,15 @@ void warn_of_unused(const VolumeEntry& entry, const std::filesystem::path& file,
         list += (list.empty() ? "" : ", ") + in_quotes(name);
     }
     if (!list.empty()) {
-        warnings.push_back(
-            make_warning(file.string(), "", "these of its grids are not used: " + list,
-                         "a media file can name one as density, albedo, emission or temperature"));
+        notes.push_back(
+            "grids of " + in_quotes(file.filename().string()) + " that are not used: " + list +
+            " (a media file can name one as density, albedo, emission or " + "temperature)");
     }
 }
 
 // The grid that holds an entry's density.
 Result<VdbGrid> read_density(const VolumeEntry& entry, const std::filesystem::path& file,
-                             const VdbReadOptions& reader, std::vector<Diagnostic>& warnings) {
+                             const VdbReadOptions& reader, std::vector<std::string>& notes) {
     std::vector<std::string> names, unread;
     if (!entry.density.empty()) {
         names.push_back(entry.density);
@@ -73,14 +79,15 @@ Result<VdbGrid> read_density(const VolumeEntry& entry, const std::filesystem::pa
                           "it is not said which of its grids is the density: " + list,
                           "name one in a media file: {\"volumes\": [{\"density\": \"NAME\"}]}");
     }
-    if (names.empty()) warn_of_unused(entry, file, std::move(unread), warnings);
+    if (names.empty()) note_unused(entry, file, std::move(unread), notes);
     return std::move(grids->front());
 }
 
 Result<Volume> load_volume(const VolumeEntry& entry, const std::filesystem::path& file,
                            double metres_per_unit, const VdbReadOptions& reader,
-                           std::vector<Diagnostic>& warnings) {
-    auto read = read_density(entry, file, reader, warnings);
+                           Findings& findings) {
+    std::vector<Diagnostic>& warnings = findings.warnings;
+    auto read = read_density(entry, file, reader, findings.notes);
     if (!read) return std::move(read).error();
     warn_of_repairs(file, *read, warnings);
     Volume volume;
@@ -155,7 +162,7 @@ void move(std::vector<Volume>& volumes, glm::dvec3 origin) {
 
 struct LoadedVolumes {
     std::vector<Volume> volumes;
-    std::vector<Diagnostic> warnings;
+    Findings findings;
 };
 
 // The inside of meshes of the scene.
@@ -184,8 +191,8 @@ Result<LoadedVolumes> load_all(const MediaFile& media, const std::vector<VolumeE
     for (const VolumeEntry& entry : entries) {
         auto volume = entry.material.empty()
                           ? load_volume(entry, entry.file.empty() ? own : entry.file,
-                                        metres_per_unit, reader, loaded.warnings)
-                          : load_body(media, entry, scene, loaded.warnings);
+                                        metres_per_unit, reader, loaded.findings)
+                          : load_body(media, entry, scene, loaded.findings.warnings);
         if (!volume) return std::move(volume).error();
         std::optional<Volume> absorber = split_absorption(*volume);
         loaded.volumes.push_back(std::move(*volume));
@@ -206,7 +213,8 @@ Error too_many(const std::string& file) {
 }  // namespace
 
 Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metres_per_unit,
-                                             Scene& scene, const VdbReadOptions& reader) {
+                                             Scene& scene, const VdbReadOptions& reader,
+                                             std::vector<std::string>* notes) {
     if (scene.volumes.size() + media.volumes.size() > kMaxVolumes) return too_many(media.file);
     for (const VolumeEntry& entry : media.volumes) {
         if (entry.file.empty() && entry.material.empty()) {
@@ -228,7 +236,9 @@ Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metr
     for (Volume& volume : loaded->volumes) {
         scene.volumes.push_back(std::move(volume));
     }
-    return std::move(loaded->warnings);
+    Findings& findings = loaded->findings;
+    if (notes != nullptr) std::ranges::move(findings.notes, std::back_inserter(*notes));
+    return std::move(findings.warnings);
 }
 
 Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaFile& media,
@@ -271,8 +281,8 @@ Result<ImportedScene> import_vdb(const std::filesystem::path& path, const MediaF
     scene.origin = choose_origin(loaded->volumes);
     scene.volumes = std::move(loaded->volumes);
     move(scene.volumes, scene.origin);
-    imported.warnings.insert(imported.warnings.end(), loaded->warnings.begin(),
-                             loaded->warnings.end());
+    std::ranges::move(loaded->findings.warnings, std::back_inserter(imported.warnings));
+    imported.notes = std::move(loaded->findings.notes);
     return imported;
 }
 

@@ -13,7 +13,8 @@ namespace opaline::formats {
 
 /// Reads the volumes of a media file into the scene, after those that it has. Lengths of grids and
 /// transforms are units of the scene [metres_per_unit m]. A scene without triangles gets an origin
-/// among its volumes. Gives warnings: about voxels that were repaired.
+/// among its volumes. Gives warnings: about voxels that were repaired. `notes` (may be null) gets
+/// lines about grids that are not used.
 ///
 /// Entries of a material become the inside of its meshes, whose surfaces are taken out
 /// (fill_body.h).
@@ -22,7 +23,8 @@ namespace opaline::formats {
 /// as density, a volume that lies beyond 1e9 m, or one whose voxels hold more than a million mean
 /// free paths; `resource` for more than kMaxVolumes.
 Result<std::vector<Diagnostic>> load_volumes(const MediaFile& media, double metres_per_unit,
-                                             Scene& scene, const VdbReadOptions& reader = {});
+                                             Scene& scene, const VdbReadOptions& reader = {},
+                                             std::vector<std::string>* notes = nullptr);
 
 /// A scene without triangles: the volume of an OpenVDB file. What it is made of say the entries of
 /// `media` that name that file, or none; other entries are loaded beside it. Without any, the

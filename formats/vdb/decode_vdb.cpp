@@ -4,9 +4,12 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <glm/glm.hpp>
 #include <ios>
+#include <limits>
+#include <string_view>
 #include <vector>
 
 #include "formats/vdb/check_transform.h"
@@ -30,13 +33,16 @@ std::string type_of(const ListedGrid& listed) {
     return listed.grid ? listed.grid->valueType() : listed.descriptor.gridType();
 }
 
-// "'density' (float), 'flame' (double)".
+// "'density' (float), 'flame' (double), 'shape' (float, level set)".
 std::string list_grids(const std::vector<ListedGrid>& grids) {
     constexpr std::size_t kEnough = 160;
     std::string list;
     for (const ListedGrid& listed : grids) {
         if (list.size() > kEnough) return list + ", ...";
-        list += (list.empty() ? "'" : ", '") + listed.name + "' (" + type_of(listed) + ")";
+        const bool is_level_set =
+            listed.grid && listed.grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+        list += (list.empty() ? "'" : ", '") + listed.name + "' (" + type_of(listed) +
+                (is_level_set ? ", level set)" : ")");
     }
     return list;
 }
@@ -98,13 +104,38 @@ std::optional<Fault> check_kind(const ListedGrid& listed) {
     return {};
 }
 
-// What may be the density of a file of which nothing is said: the grid of floats with that name,
-// else all of them; the only grid, whatever its values.
+// How unlikely a grid of floats is to be the density: by its name, as simulators and modellers
+// give them, then by whether its file calls it a fog volume.
+int rank_density(const ListedGrid& listed) {
+    constexpr std::array<std::string_view, 3> kMedia{"smoke", "cloud", "fog"};
+    constexpr std::array<std::string_view, 10> kOthers{
+        "temp", "heat", "flame", "fire", "fuel", "burn", "emission", "vel", "pressure", "shadow"};
+    std::string name = listed.name;
+    std::ranges::transform(name, name.begin(), [](unsigned char c) {
+        return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    });
+    const auto is_in_name = [&](std::string_view word) {
+        return name.find(word) != std::string::npos;
+    };
+    if (listed.name == "density") return 0;
+    if (name == "density") return 1;
+    if (is_in_name("density")) return 2;
+    if (std::ranges::any_of(kMedia, is_in_name)) return 3;
+    if (std::ranges::any_of(kOthers, is_in_name)) return 6;
+    return listed.grid->getGridClass() == openvdb::GRID_FOG_VOLUME ? 4 : 5;
+}
+
+// What may be the density of a file of which nothing is said: the grids of floats that are
+// likeliest to be; the only grid, whatever its values.
 std::vector<const ListedGrid*> list_densities(const std::vector<ListedGrid>& grids) {
     std::vector<const ListedGrid*> found;
+    int least = std::numeric_limits<int>::max();
     for (const ListedGrid& listed : grids) {
         if (check_kind(listed) || !listed.grid->isType<openvdb::FloatGrid>()) continue;
-        if (listed.name == "density") return {&listed};
+        const int rank = rank_density(listed);
+        if (rank > least) continue;
+        if (rank < least) found.clear();
+        least = rank;
         found.push_back(&listed);
     }
     const bool is_alone = found.empty() && grids.size() == 1 && !check_kind(grids.front());

@@ -42,8 +42,8 @@ struct VdbReadOptions {
 };
 
 /// Reads fog volumes of an OpenVDB file: those with these names, in this order. If `names` is
-/// empty: the grid of floats that is called density, else every grid of floats that can be read as
-/// a density, in the file's order, or the only grid there is. A name that stands several times in a
+/// empty: the grid of floats that is called density, else those that are likeliest to be one
+/// (README.md) and can be read so, in the file's order, or the only grid there is. A name that stands several times in a
 /// file can be given as "name[0]", "name[1]". Active tiles are filled in. `unread` (may be null)
 /// receives the names of grids that are not in the result, 64 at most.
 ///
