@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bake/base/interrupted.h"
+#include "bake/emitters/cross_media.h"
 #include "bake/emitters/emitter_knobs.h"
 #include "bake/emitters/light_media.h"
 #include "bake/lamps/receiver_light.h"
@@ -122,8 +123,14 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     MediaRows of_media(job.primitives.size());
     if (job.media.finished != nullptr) {
         of_media = run_stage(log, "media lit by emitters", [&](std::uint64_t& rays) {
-            return light_media({job.media, job.receivers, job.primitives, particles}, light,
-                               elements, exitance, context, rays);
+            MediaRows rows = light_media({job.media, job.receivers, job.primitives, particles},
+                                         light, elements, exitance, context, rays);
+            for (std::uint32_t p = 0; p < rows.size() && !context.cancelled(); ++p) {
+                if (job.primitives[p].shading != formats::Shading::translucent) continue;
+                add_crossing_light(*job.media.finished, job.receivers[p], light, rows[p], context,
+                                   rays);
+            }
+            return rows;
         });
     }
     for (const Lamp& lamp : job.lamps) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -35,14 +36,11 @@ glm::dvec3 march_block(const GlowLight& glow, const RayScene& surfaces, const Re
     rays += block.count;
     glm::dvec3 sum(0);
     for (std::uint32_t lane = 0; lane < block.count; ++lane) {
-        runtime::MarchRay ray{
-            to_vec3(glm::dvec3(receiver.origin)),
-            {block.packet.dir_x[lane], block.packet.dir_y[lane], block.packet.dir_z[lane]}};
-        if (!surfaces.is_empty() && hits.hit[lane] != 0) {
-            ray.end = static_cast<double>(hits.distance[lane]);
-        }
-        const formats::Rgb seen = runtime::march_volumes(glow.lit, ray, {.step = kStep}).radiance;
-        sum += block.weight[lane] * glm::dvec3(seen.r, seen.g, seen.b);
+        const bool is_met = !surfaces.is_empty() && hits.hit[lane] != 0;
+        sum += block.weight[lane] * glow_radiance(glow, glm::dvec3(receiver.origin),
+                                                  glm::dvec3(direction_of(block.packet, lane)),
+                                                  is_met ? static_cast<double>(hits.distance[lane])
+                                                         : std::numeric_limits<double>::infinity());
     }
     block.lanes = {};
     block.count = 0;
@@ -93,6 +91,14 @@ GlowLight make_glow_light(const formats::Scene& scene, std::uint32_t volume,
     }
     result.all = {box.centre(), box.radius()};
     return result;
+}
+
+glm::dvec3 glow_radiance(const GlowLight& glow, const glm::dvec3& from, const glm::dvec3& direction,
+                         double reach) {
+    runtime::MarchRay ray{to_vec3(from), to_vec3(direction)};
+    ray.end = std::min(ray.end, reach);
+    const formats::Rgb seen = runtime::march_volumes(glow.lit, ray, {.step = kStep}).radiance;
+    return {seen.r, seen.g, seen.b};
 }
 
 glm::dvec3 glow_irradiance(const GlowLight& glow, const RayScene& surfaces,

@@ -51,6 +51,10 @@ GlowLight make_glow_light(const formats::Scene& scene, std::uint32_t volume,
                           const formats::VolumesView& volumes, std::uint32_t glow,
                           unsigned threads);
 
+/// Radiance [nit] that a volume's own light has over `reach` [m] of a ray, at its beginning.
+glm::dvec3 glow_radiance(const GlowLight& glow, const glm::dvec3& from, const glm::dvec3& direction,
+                         double reach);
+
 /// Irradiance [W m^-2] of a receiver: rays in the cones of both balls, weighed by the balance
 /// heuristic, march through the volumes up to the first surface,
 ///

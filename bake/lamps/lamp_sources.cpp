@@ -168,6 +168,7 @@ glm::dvec3 GlowingTriangle::power() const {
 LampSources make_lamp_sources(const formats::Scene& scene, const Lamp& lamp,
                               const ScenePyramids* textures) {
     LampSources sources;
+    sources.primitives = lamp.primitives;
     const auto is_textured = [&](const formats::Primitive& primitive) {
         return scene.materials[primitive.material].emission_image != formats::kNone &&
                !primitive.texcoord.empty();

@@ -49,6 +49,7 @@ struct LampSources {
     /// Where triangles are textured: all triangles, each before its parts, in the order of
     /// `triangles`, which are those that are even. Else empty.
     std::vector<GlowingPart> parts;
+    std::vector<std::uint32_t> primitives;  ///< of Lamp
     std::vector<formats::Light> lights;
     GlowingVoxels voxels;
     /// Sphere around all surfaces of the scene: directional lights shine on its square.

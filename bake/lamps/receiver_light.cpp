@@ -32,58 +32,10 @@ bool has_bounces(const LampLight& light) {
                                [](const ElementLight& of_lamp) { return !of_lamp.empty(); });
 }
 
-/// A gather ray: a cell of the directions over the horizon.
-struct GatherCell {
-    glm::vec3 direction{0};
-    double solid_angle = 0;  ///< [sr]
-};
-
 // Of N rays spread by the cosine one has pi / (N cosine); cells at the horizon begin there.
 double cell_of_ray(float cosine, std::uint32_t rays) {
     const double least = 0.5 / std::sqrt(rays);
     return std::numbers::pi / (rays * std::max(static_cast<double>(cosine), least));
-}
-
-// What the cell sees of the surface at a hit, to look its textures up over.
-std::optional<TextureView> view_of_cell(const LampLight& light, const Arrival& at,
-                                        const GatherCell& cell) {
-    const formats::Primitive& primitive = light.scene.primitives[at.side.primitive];
-    if (light.textures == nullptr ||
-        !has_pyramid(*light.textures, light.scene.materials[primitive.material])) {
-        return std::nullopt;
-    }
-    return TextureView{*light.textures,
-                       moments_of_cone(uv_gradient(primitive, at.side.first_index), cell.direction,
-                                       glm::vec3(at.normal), at.distance, cell.solid_angle)};
-}
-
-// Adds what the surface at a hit sends toward the ray, of every lamp, times pi and `weight`.
-void add_reflected(const LampLight& light, const Arrival& at, const glm::dvec3& weight,
-                   const TextureView* view, std::vector<glm::dvec3>& sum) {
-    const TriangleSide& side = at.side;
-    const glm::vec3 weights(at.weights);
-    if (light.media != nullptr && !side.is_back && side.primitive < light.media->exitance.size() &&
-        !light.media->exitance[side.primitive].empty()) {
-        for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
-            sum[lamp] +=
-                weight * media_exitance(light.scene, *light.media, lamp, side, weights, view);
-        }
-        return;
-    }
-    const BounceColor color = bounce_color(light.scene, side, weights, view);
-    const auto add = [&](const glm::dvec3& share, bool is_back) {
-        if (share == glm::dvec3(0)) return;
-        const std::size_t element =
-            light.layout.element({side.primitive, side.first_index, is_back}, at.weights);
-        if (element == light.layout.size()) return;
-        for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
-            if (!light.elements[lamp].empty()) {
-                sum[lamp] += weight * share * glm::dvec3(light.elements[lamp].irradiance[element]);
-            }
-        }
-    };
-    add(color.reflect, side.is_back);
-    add(color.transmit, !side.is_back);
 }
 
 /// A ray of a receiver.
@@ -141,6 +93,46 @@ formats::Rgb radiance_of(const glm::dvec3& exitance) {
 
 }  // namespace
 
+std::optional<TextureView> view_of_cone(const LampLight& light, const Arrival& at,
+                                        const glm::vec3& direction, double solid_angle) {
+    const formats::Primitive& primitive = light.scene.primitives[at.side.primitive];
+    if (light.textures == nullptr ||
+        !has_pyramid(*light.textures, light.scene.materials[primitive.material])) {
+        return std::nullopt;
+    }
+    return TextureView{*light.textures,
+                       moments_of_cone(uv_gradient(primitive, at.side.first_index), direction,
+                                       glm::vec3(at.normal), at.distance, solid_angle)};
+}
+
+void add_reflected(const LampLight& light, const Arrival& at, const glm::dvec3& weight,
+                   const TextureView* view, std::vector<glm::dvec3>& sum) {
+    const TriangleSide& side = at.side;
+    const glm::vec3 weights(at.weights);
+    if (light.media != nullptr && !side.is_back && side.primitive < light.media->exitance.size() &&
+        !light.media->exitance[side.primitive].empty()) {
+        for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
+            sum[lamp] +=
+                weight * media_exitance(light.scene, *light.media, lamp, side, weights, view);
+        }
+        return;
+    }
+    const BounceColor color = bounce_color(light.scene, side, weights, view);
+    const auto add = [&](const glm::dvec3& share, bool is_back) {
+        if (share == glm::dvec3(0)) return;
+        const std::size_t element =
+            light.layout.element({side.primitive, side.first_index, is_back}, at.weights);
+        if (element == light.layout.size()) return;
+        for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
+            if (!light.elements[lamp].empty()) {
+                sum[lamp] += weight * share * glm::dvec3(light.elements[lamp].irradiance[element]);
+            }
+        }
+    };
+    add(color.reflect, side.is_back);
+    add(color.transmit, !side.is_back);
+}
+
 std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& receiver,
                                       std::uint64_t key, std::uint64_t& rays) {
     std::vector<glm::dvec3> total(light.sources.size(), glm::dvec3(0));
@@ -167,7 +159,7 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
                 const glm::vec3 direction = direction_of(packet, lane);
                 const double cell =
                     cell_of_ray(glm::dot(direction, receiver.normal), light.samples);
-                const auto view = view_of_cell(light, *at, {direction, cell});
+                const auto view = view_of_cone(light, *at, direction, cell);
                 gather_along(
                     light, {glm::dvec3(receiver.origin), glm::dvec3(direction), key, first + lane},
                     *at, view ? &*view : nullptr, total, rays);

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "bake/lamps/glow_light.h"
 #include "bake/lamps/lamp_sources.h"
 #include "bake/lamps/media_light.h"
+#include "bake/lamps/onward_ray.h"
 #include "bake/lamps/surface_elements.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/ray_scene.h"
@@ -57,6 +59,17 @@ std::vector<glm::dvec3> receive_light(const LampLight& light, const Receiver& re
 /// it.
 void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
                   std::uint64_t& rays);
+
+/// Adds what the surface at a hit sends toward the ray, of every lamp, times pi and `weight`: by
+/// its elements, or as media send it out; not what it emits or mirrors. `view`: footprint of
+/// texture look-ups; null: at the point.
+void add_reflected(const LampLight& light, const Arrival& at, const glm::dvec3& weight,
+                   const TextureView* view, std::vector<glm::dvec3>& sum);
+
+/// What a cone of directions [sr] sees of the surface at a hit, to look its textures up over; none
+/// where these are points' or do not vary.
+std::optional<TextureView> view_of_cone(const LampLight& light, const Arrival& at,
+                                        const glm::vec3& direction, double solid_angle);
 
 /// The rows of a set of opaque or thin-walled receivers: [lamp][row], outgoing radiance [nit]
 /// without base colour, `terms` a receiver. Two terms: of the side of the normal, then of the other

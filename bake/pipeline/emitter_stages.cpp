@@ -46,8 +46,12 @@ double glow_steps(const formats::Scene& scene) {
 bool has_dark_media(const BakeInputs& bake, std::span<const PlanEntry> plan,
                     std::span<const SubjectState> subjects) {
     return std::ranges::any_of(subjects, [&](const SubjectState& subject) {
+        const auto decisions = entries_of(plan, subject.material);
+        const bool is_clear =
+            bake.scene.materials[subject.material].medium->sigma_s == formats::Rgb{};
         return subject.layout.translucent && subject.layout.has_rows() &&
-               !takes_other_light(bake.effects, entries_of(plan, subject.material), subject.layout);
+               !takes_other_light(bake.effects, decisions, subject.layout) &&
+               !(is_clear && lets_light_cross(bake.effects, decisions, subject.layout));
     });
 }
 
@@ -97,19 +101,28 @@ formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
 std::optional<Work> work_of_media(const CostedBake& bake, std::size_t lamps, double particles) {
     const CostRequest& request = bake.request;
     std::optional<Work> all;
+    bool has_passes = false;
     for (const CostedSubject& subject : bake.subjects) {
-        if (!takes_other_light(request.effects, subject.decisions, subject.layout)) continue;
-        if (!all) all = Work{0, kPasses * static_cast<double>(lamps) * particles};
         CostedSubject lit = subject;
         lit.layout = lit_layout(subject.layout);
+        const double receivers = request.facts.material[subject.material].receivers;
+        Knobs fine = request.knobs;
+        fine.cubemap_size = lamp_basis(lamps);
+        if (lets_light_cross(request.effects, subject.decisions, subject.layout)) {
+            if (!all) all.emplace();
+            *all += work_of_points(bake, lit, fine, receivers, [&](std::size_t e) {
+                return request.effects.effects[e].look_through != nullptr;
+            });
+        }
+        if (!takes_other_light(request.effects, subject.decisions, subject.layout)) continue;
+        if (!all) all.emplace();
+        if (!has_passes) *all += Work{0, kPasses * static_cast<double>(lamps) * particles};
+        has_passes = true;
         const auto counts = [&](std::size_t e) {
             return request.effects.effects[e].adds_other_light;
         };
-        const double receivers = request.facts.material[subject.material].receivers;
         *all += work_of_points(bake, lit, coarse_knobs(request.effects, request.knobs, kPatchBasis),
                                std::min(receivers, kPatchPoints), counts);
-        Knobs fine = request.knobs;
-        fine.cubemap_size = lamp_basis(lamps);
         *all += work_of_points(bake, lit, fine, receivers, counts);
     }
     return all;

@@ -137,4 +137,38 @@ std::vector<std::vector<float>> light_medium(const FinishedMedia& media,
     return rows;
 }
 
+bool lets_light_cross(const EffectTable& effects, std::span<const PlanEntry> decisions,
+                      const RowLayout& layout) {
+    return layout.translucent &&
+           std::ranges::any_of(effects.effects, [&](const EffectDescriptor& effect) {
+               return lets_cross(effect) && acts_on(effect, decisions, layout);
+           });
+}
+
+std::vector<std::vector<float>> light_through_medium(const FinishedMedia& media,
+                                                     const MediumRequest& request,
+                                                     const Context& context, std::uint64_t& rays) {
+    const EffectTable& effects = media.bake.effects;
+    const auto own = std::ranges::find(media.subjects, request.material, &SubjectState::material);
+    if (own == media.subjects.end() ||
+        !lets_light_cross(effects, entries_of(media.plan, request.material), own->layout)) {
+        return {};
+    }
+    BakeInputs lit = media.bake;
+    lit.light = &request.light;
+    Knobs knobs = media.knobs;
+    knobs.cubemap_size = request.cubemap_size;
+    std::vector<SubjectState> alone;
+    alone.push_back(std::move(*own));
+    settle_subjects(media.bake, media.plan, knobs, alone);
+    alone.front().layout = lit_layout(alone.front().layout);
+    auto rows = rows_of_some(lit, knobs, context, alone.front(),
+                             {.material = request.material,
+                              .outside = {request.outside.begin(), request.outside.end()},
+                              .inside = {request.inside.begin(), request.inside.end()}},
+                             lets_cross, rays);
+    *own = std::move(alone.front());
+    return rows;
+}
+
 }  // namespace opaline::bake

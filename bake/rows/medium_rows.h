@@ -52,4 +52,14 @@ std::vector<std::vector<float>> light_medium(const FinishedMedia& media,
                                              const MediumRequest& request, const Context& context,
                                              std::uint64_t& rays);
 
+/// The same of light that crosses the medium straight from lamps and what they light
+/// (OtherLight::lamps), by the effects that let it cross. None where no such effect acts.
+std::vector<std::vector<float>> light_through_medium(const FinishedMedia& media,
+                                                     const MediumRequest& request,
+                                                     const Context& context, std::uint64_t& rays);
+
+/// Whether an effect of the plan lets light cross a medium straight.
+bool lets_light_cross(const EffectTable& effects, std::span<const PlanEntry> decisions,
+                      const RowLayout& layout);
+
 }  // namespace opaline::bake

@@ -19,24 +19,24 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr int kMostArrivals = 256;
 
 // A triangle that a view has arrived at.
-struct Arrival {
+struct BoundaryHit {
     glm::vec3 position;  // [m], on the triangle
     glm::vec3 flat;      // unit, of the triangle
     glm::vec3 normal;    // unit, interpolated, along `flat`
     float error;         // [m], bound on that of the position
 };
 
-Arrival arrival_at(const formats::Scene& scene, const PacketHits& hits, std::uint32_t lane) {
+BoundaryHit arrival_at(const formats::Scene& scene, const PacketHits& hits, std::uint32_t lane) {
     const formats::Primitive& p = scene.primitives[hits.primitive[lane]];
     const std::uint32_t* corner = &p.index[hits.first_index[lane]];
     const float u = hits.u[lane], v = hits.v[lane];
     const auto mix = [&](const std::vector<glm::vec3>& of) {
         return (1 - u - v) * of[corner[0]] + u * of[corner[1]] + v * of[corner[2]];
     };
-    Arrival a{mix(p.position),
-              {hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]},
-              mix(p.normal),
-              hits.error[lane]};
+    BoundaryHit a{mix(p.position),
+                  {hits.normal_x[lane], hits.normal_y[lane], hits.normal_z[lane]},
+                  mix(p.normal),
+                  hits.error[lane]};
     const float length = glm::length(a.normal);
     a.normal = length > 0 && glm::dot(a.normal, a.flat) > 0 ? a.normal / length : a.flat;
     return a;
@@ -106,16 +106,23 @@ class Follower {
         const PacketHits hits = body_.rays->closest(mask, packet);
         for (std::uint32_t i = 0; i < kLanes; ++i) {
             if (mask[i] != 0) {
-                lanes_[i].is_on_its_way = hits.hit[i] != 0 && hits.material[i] == body_.material &&
-                                          arrive(lanes_[i], hits, i, first + i);
+                Lane& lane = lanes_[i];
+                lane.is_on_its_way = hits.hit[i] != 0;
+                if (!lane.is_on_its_way) continue;
+                attenuate(lane, hits.distance[i]);
+                if (hits.material[i] == body_.material) {
+                    lane.is_on_its_way = arrive(lane, hits, i, first + i);
+                } else {
+                    lane.is_on_its_way = false;
+                    found_.inside.push_back(
+                        {first + i, lane.direction, lane.weight, lane.position});
+                }
             }
         }
         return true;
     }
 
-    // False: nothing of the view goes on.
-    bool arrive(Lane& lane, const PacketHits& hits, std::uint32_t i, std::uint32_t view) {
-        float length = hits.distance[i];
+    void attenuate(Lane& lane, float length) const {
         if (body_.field) {
             length *=
                 body_.field->mean_density(lane.position, lane.position + length * lane.direction);
@@ -123,6 +130,10 @@ class Follower {
         for (std::size_t b = 0; b < body_.bands; ++b) {
             lane.weight[b] *= exp_of_negative(-body_.sigma_t[b] * length);
         }
+    }
+
+    // False: nothing of the view goes on.
+    bool arrive(Lane& lane, const PacketHits& hits, std::uint32_t i, std::uint32_t view) {
         const float cosine = hits.cosine[i];
         if (cosine == 0) {  // without area, or edge-on: as if it were not there
             constexpr float kBeyond = 1e-6f;
@@ -130,7 +141,7 @@ class Follower {
                 (hits.distance[i] * (1 + kBeyond) + 2 * hits.error[i]) * lane.direction;
             return true;
         }
-        const Arrival at = arrival_at(*body_.scene, hits, i);
+        const BoundaryHit at = arrival_at(*body_.scene, hits, i);
         if (cosine < 0 || lane.shells > 1) {  // of a shell inside
             lane.shells += cosine > 0 ? -1 : 1;
             lane.position = at.position + (cosine > 0 ? 2 : -2) * at.error * at.flat;
@@ -150,7 +161,7 @@ class Follower {
                            [&](std::uint32_t v) { return p.position[v] == vertex_; });
     }
 
-    bool leave(Lane& lane, const Arrival& at, std::uint32_t view) {
+    bool leave(Lane& lane, const BoundaryHit& at, std::uint32_t view) {
         const auto mirrored = [&](glm::vec3 n) {
             return lane.direction - 2 * glm::dot(lane.direction, n) * n;
         };

@@ -52,6 +52,7 @@ struct StraightExit {
 struct StraightLight {
     std::vector<StraightExit> exits;    ///< into the sky
     std::vector<StraightExit> blocked;  ///< toward something that stands before the sky
+    std::vector<StraightExit> inside;   ///< at another material inside, from before it: attenuated
     /// Views that leave at once through a triangle of their own vertex: a smooth surface has none
     /// of these.
     std::vector<std::uint32_t> past;
@@ -63,7 +64,7 @@ inline constexpr float kLeastStraightWeight = 0x1p-12f;
 /// Follows views straight through a body, backwards from the eye (README.md, "The paths"): at each
 /// arrival at the boundary the transmitted share is an exit, and the reflected share goes on.
 /// `seen`: unit directions inside, away from the body, toward the eye. Light from other materials
-/// inside is not followed, and light through a hole is none. Appends to `found`. Returns the rays
+/// inside goes no further, and light through a hole is none. Appends to `found`. Returns the rays
 /// traced. Any thread.
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
                               std::span<const glm::vec3> seen, StraightLight& found);

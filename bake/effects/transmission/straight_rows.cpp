@@ -8,6 +8,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/effects/transmission/view_fit.h"
+#include "bake/lamps/seen_lamps.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -155,6 +156,17 @@ PointViews follow_enough(const StraightBody& body, const BodyPoint& point, std::
                : own;
 }
 
+// Factors of the rows of `layout` for each view.
+std::vector<float> fit_rows(const TransmissionViews& views, const RowLayout& layout) {
+    const std::uint32_t terms = straight_terms(layout);
+    std::vector<float> factors = fit_views(views, terms);
+    if (terms > 1) return factors;
+    for (float& factor : factors) {
+        factor /= static_cast<float>(layout.view_of_constant());
+    }
+    return factors;
+}
+
 // Under a sun at one rim of the views, a fit of degree 1 shows three times its mean light, below
 // zero, at the other rim. Nine rows would lose too much of how views differ.
 constexpr std::uint32_t kLimitedTerms = 4;
@@ -188,12 +200,8 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
     const bool sees_surfaces = surfaces != nullptr && !found.blocked.empty();
     if (found.exits.empty() && !sees_surfaces) return rays;
     const std::uint32_t terms = straight_terms(layout);
-    std::vector<float> factors = fit_views(set, terms);
-    if (terms == 1) {
-        for (float& factor : factors) {
-            factor /= static_cast<float>(layout.view_of_constant());
-        }
-    } else {
+    std::vector<float> factors = fit_rows(set, layout);
+    if (terms > 1) {
         std::vector<double> even(set.seen.size());
         const auto limit_with = [&](std::span<const StraightExit> exits) {
             for (const StraightExit& exit : exits) {
@@ -227,6 +235,39 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         }
         rays += add_seen_light(*surfaces, looks, solid_angle_of(views), row.cubemap_size, row.bands,
                                row.values);
+    }
+    return rays;
+}
+
+std::uint64_t add_straight_lamps(const StraightBody& body, const BodyPoint& point,
+                                 std::uint32_t views, const RowLayout& layout, const DenseRow& row,
+                                 const LampLight& lamps) {
+    if (point.normal == glm::vec3(0)) return 0;
+    std::uint64_t rays = 0;
+    const PointViews own = follow_enough(body, point, views, rays);
+    const std::uint32_t terms = straight_terms(layout);
+    const std::vector<float> factors = fit_rows(own.set, layout);
+    std::vector<SurfaceView> looks;
+    for (const auto* some : {&own.found.exits, &own.found.blocked, &own.found.inside}) {
+        for (const StraightExit& exit : *some) {
+            const auto factor =
+                std::span<const float>(factors).subspan(std::size_t{exit.view} * terms, terms);
+            looks.push_back({exit.origin, exit.direction, exit.weight, factor});
+        }
+    }
+    std::vector<float> values(std::size_t{terms} * row.bands * row.size());
+    const DenseRow seen{values, row.cubemap_size, terms, row.bands};
+    rays += add_seen_lamps(lamps, looks, solid_angle_of(views),
+                           key_of({point.position, point.normal}), seen);
+    const std::size_t stride = row.bands * row.size();
+    if (terms == kLimitedTerms) {
+        const NonNegativeViews limit(own.set, point.normal, body.eta, terms);
+        for (std::size_t i = 0; i < stride; ++i) {
+            limit.apply(&values[i], stride);
+        }
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        row.values[i] += values[i];
     }
     return rays;
 }

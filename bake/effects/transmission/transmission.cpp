@@ -18,6 +18,7 @@
 #include "bake/effects/transmission/straight_rows.h"
 #include "bake/effects/transmission/view_fit.h"
 #include "bake/exchange/other_light.h"
+#include "bake/lamps/receiver_light.h"
 #include "bake/plan/stage_work.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/truth/luminance.h"
@@ -205,8 +206,12 @@ PreparedPtr prepare(const EffectInputs& inputs, std::uint64_t&) {
 
 std::uint64_t add(const EffectInputs& inputs, const GatherReceiver& receiver, const DenseRow& row) {
     const OtherLight* const light = light_of(inputs);
-    return add_straight(static_cast<const Body&>(*inputs.own.prepared).body, receiver.inside,
-                        whole(inputs.knobs, kStraightViews), inputs.layout, row,
+    const StraightBody& body = static_cast<const Body&>(*inputs.own.prepared).body;
+    const std::uint32_t views = whole(inputs.knobs, kStraightViews);
+    if (light != nullptr && light->lamps != nullptr) {
+        return add_straight_lamps(body, receiver.inside, views, inputs.layout, row, *light->lamps);
+    }
+    return add_straight(body, receiver.inside, views, inputs.layout, row,
                         light != nullptr ? light->surfaces.get() : nullptr);
 }
 
