@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -29,6 +30,7 @@ struct ClusterTree {
     SparseVectors samples;  ///< A_i E_i
     /// The same of other light (SampleTransport::other), or none.
     SparseVectors other_sums, other_samples;
+    std::array<float, 3> other_factor{1, 1, 1};  ///< of other light: MediumProfile::all_orders
     double total_area = 0;
     double mean_norm = 0;  ///< RMS over the samples of ||E_i||, weighted by area
 };

@@ -108,7 +108,8 @@ void add_other(const ClusterTree& tree, std::span<const ClusterWeight> weights,
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
             for (std::size_t b = 0; b < 3; ++b) {
-                to[b] += w.weight[b] * entries.value[bands == 1 ? i : 3 * i + b];
+                to[b] += tree.other_factor[b] * w.weight[b] *
+                         entries.value[bands == 1 ? i : 3 * i + b];
             }
         }
     }
@@ -122,7 +123,7 @@ void add_other_grey(const ClusterTree& tree, std::span<const ClusterWeight> weig
         const SparseVector entries = entries_of(tree.other_sums, tree.other_samples, w);
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             for (std::size_t b = 0; b < bands; ++b) {
-                const float share = bands == 1 ? 1 : kLuminance[b];
+                const float share = tree.other_factor[0] * (bands == 1 ? 1 : kLuminance[b]);
                 sums[entries.index[i]] += share * w.weight[0] * entries.value[bands * i + b];
             }
         }

@@ -133,6 +133,7 @@ MediumProfile make_medium_profile(const Medium& medium) {
         if (b > 0 && sigma_s == bands[b - 1].sigma_s && sigma_a == bands[b - 1].sigma_a) {
             profile.band[b] = profile.band[b - 1];
             profile.scale[b] = profile.scale[b - 1];
+            profile.all_orders[b] = profile.all_orders[b - 1];
             continue;
         }
         profile.band[b] =
@@ -147,6 +148,7 @@ MediumProfile make_medium_profile(const Medium& medium) {
                     DiffusionLength::mean_free_path_diffuse);
             } else {
                 profile.scale[b] = returned.rest / (total * escape);
+                if (returned.rest > 0) profile.all_orders[b] += returned.once / returned.rest;
             }
         }
         if (total > 0) {

@@ -14,6 +14,10 @@ namespace opaline::bake {
 struct MediumProfile {
     std::array<Profile, 3> band;
     std::array<double, 3> scale{1, 1, 1};  ///< multiplies each: `energy_match`
+    /// Times R_d for light of other surfaces, which effects for light of the sky that scatters once
+    /// do not have: all that a half space returns over what it returns of light scattered more
+    /// often.
+    std::array<double, 3> all_orders{1, 1, 1};
     double exit = 1;      ///< c_exit = 1 - F_ext (scattering/README.md, "Exit"), 1 in `paper` mode
     double smallest = 0;  ///< profile_length of the densest band [m]; 0: nothing scatters
     double eta = 1;

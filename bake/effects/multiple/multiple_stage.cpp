@@ -259,6 +259,9 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
         stage.tree = build_cluster_tree(
             samples, std::move(transport), options.cubemap_size, options.kept, context,
             has_environment(options.light) ? kKeptOfLight : kAllCoefficients);
+        for (std::size_t b = 0; b < 3 && !walks; ++b) {  // walks hold the difference
+            stage.tree.other_factor[b] = static_cast<float>(medium.all_orders[b]);
+        }
     }
     if (walks && !context.cancelled()) {
         const double all_walks = count_walks(plan, area, options.walks);

@@ -1,6 +1,7 @@
 #include "bake/effects/multiple/true_multiple.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -111,6 +112,13 @@ SurfaceIntegral make_surface_integral(const formats::Scene& scene, std::uint32_t
         profile, kSpacing * profile.smallest,
         integral.triangles.empty() ? 0.0 : static_cast<double>(glm::length(high - low)));
     integral.smallest = static_cast<float>(profile.smallest);
+    double light = 0, all = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+        constexpr std::array<double, 3> kLuminance{0.2126, 0.7152, 0.0722};
+        light += kLuminance[b] * profile.total(b);
+        all += kLuminance[b] * profile.total(b) * profile.all_orders[b];
+    }
+    integral.all_orders = light > 0 ? all / light : 1;
     integral.scale = 1 / (std::numbers::pi * profile.exit);
     integral.eta = profile.eta;
     return integral;
@@ -158,7 +166,7 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLi
                 std::ranges::fill(diffuse, 0.0);
                 traced += add_true_bounces(*other, sample.receiver,
                                            std::uint64_t{receiver} << 32 | drawn, 1, diffuse);
-                const double entering = 1 / (std::numbers::pi * integral.scale);
+                const double entering = integral.all_orders / (std::numbers::pi * integral.scale);
                 for (std::size_t l = 0; l < lights; ++l) {
                     irradiance[l] += entering * diffuse[l];
                 }

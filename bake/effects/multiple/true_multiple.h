@@ -27,6 +27,7 @@ struct SurfaceIntegral {
     GatherProfile profile;  ///< of samples infinitely dense
     float smallest = 0;     ///< [m] profile length of the densest band
     double scale = 0;       ///< 1 / (pi c_exit)
+    double all_orders = 1;  ///< MediumProfile's, mean by luminance: of other light
     double eta = 1;
 };
 
