@@ -110,13 +110,39 @@ SparseVectors sum_nodes(const SparseVectors& samples, std::size_t texels, std::s
 
 }  // namespace
 
+void sort_by_body(const SeparateBodies& bodies, std::vector<SurfaceSample>& samples) {
+    if (bodies.count() <= 1) return;
+    std::vector<std::vector<SurfaceSample>> of_body(bodies.count());
+    for (const SurfaceSample& sample : samples) {
+        of_body[bodies.body_at(sample.position)].push_back(sample);
+    }
+    samples.clear();
+    for (std::vector<SurfaceSample>& own : of_body) {
+        sort_into_groups(own);
+        samples.insert(samples.end(), own.begin(), own.end());
+    }
+}
+
 ClusterTree build_cluster_tree(std::span<const SurfaceSample> samples, SampleTransport transport,
                                std::uint32_t cubemap_size, std::uint32_t kept,
-                               const Context& context, std::uint32_t kept_of_light) {
+                               const Context& context, std::uint32_t kept_of_light,
+                               SeparateBodies bodies) {
     ClusterTree tree;
     if (samples.empty()) return tree;
-    Builder{samples, transport.mean, tree.nodes}.build(0,
-                                                       static_cast<std::uint32_t>(samples.size()));
+    Builder builder{samples, transport.mean, tree.nodes};
+    if (bodies.count() <= 1) {
+        builder.build(0, static_cast<std::uint32_t>(samples.size()));
+    } else {
+        tree.roots.assign(bodies.count(), ClusterTree::kNoRoot);
+        for (std::uint32_t begin = 0, end = 0; begin < samples.size(); begin = end) {
+            const std::uint32_t body = bodies.body_at(samples[begin].position);
+            while (end < samples.size() && bodies.body_at(samples[end].position) == body)
+                ++end;
+            tree.roots[body] = static_cast<std::uint32_t>(tree.nodes.size());
+            builder.build(begin, end - begin);
+        }
+    }
+    tree.bodies = std::move(bodies);
     copy_samples(samples, transport.norm, tree);
     tree.samples = std::move(transport.rows);
     const std::size_t texels = formats::cubemap_texels(cubemap_size);

@@ -47,10 +47,25 @@ struct Gather {
                                        node.norm * (most[2] - least[2]) <= allowed[2]));
     }
 
+    // Light does not cross air by diffusion: samples of the point's own body count, where it has
+    // any.
     void visit() {
+        const std::uint32_t body = tree.bodies.body_at(position);
+        if (tree.roots.empty()) {
+            visit(0);
+        } else if (tree.roots[body] != ClusterTree::kNoRoot) {
+            visit(tree.roots[body]);
+        } else {
+            for (const std::uint32_t root : tree.roots) {
+                if (root != ClusterTree::kNoRoot) visit(root);
+            }
+        }
+    }
+
+    void visit(std::uint32_t root) {
         std::array<std::uint32_t, 64> stack;  // median splits: depth below 32
         std::size_t height = 0;
-        stack[height++] = 0;
+        stack[height++] = root;
         const auto node_count = static_cast<std::uint32_t>(tree.nodes.size());
         while (height > 0) {
             const std::uint32_t v = stack[--height];
@@ -108,8 +123,8 @@ void add_other(const ClusterTree& tree, std::span<const ClusterWeight> weights,
         for (std::size_t i = 0; i < entries.index.size(); ++i) {
             float* const to = &rgbx[4 * std::size_t{entries.index[i]}];
             for (std::size_t b = 0; b < 3; ++b) {
-                to[b] += tree.other_factor[b] * w.weight[b] *
-                         entries.value[bands == 1 ? i : 3 * i + b];
+                to[b] +=
+                    tree.other_factor[b] * w.weight[b] * entries.value[bands == 1 ? i : 3 * i + b];
             }
         }
     }

@@ -26,7 +26,8 @@ struct GatherOptions {
 
 /// The weights of T_d(x) = sum A_i R_far(|x_i - x|) E_i + near_mass mean E at a point with unit
 /// normal. The mean is over nearby samples that face the same way, so the two sides of a thin part
-/// do not mix. With dense samples near_mass is 0. Overwrites `weights`.
+/// do not mix. Samples of other bodies than the point's do not count. With dense samples near_mass
+/// is 0. Overwrites `weights`.
 void collect_weights(const ClusterTree& tree, const GatherProfile& profile, glm::vec3 position,
                      glm::vec3 normal, const GatherOptions& options,
                      std::vector<ClusterWeight>& weights);

@@ -231,7 +231,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
             : count_samples(area, depth,
                             {options.samples_per_path, static_cast<double>(options.samples),
                              options.receivers});
-    const std::vector<SurfaceSample> samples =
+    std::vector<SurfaceSample> samples =
         sample_surface(scene, primitives, count, options.seed, context);
     const double per_sample = area / static_cast<double>(std::max<std::size_t>(1, samples.size()));
     stage.profile = make_gather_profile(stage.medium, std::sqrt(per_sample),
@@ -245,6 +245,11 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
         widen_for_receivers(plan, area, diagonal_of(scene, material), options.receivers);
     }
     const bool walks_alone = walks && !plan.is_residual;
+    SeparateBodies apart;
+    if (!walks_alone) {
+        apart = SeparateBodies(scene, material);
+        sort_by_body(apart, samples);
+    }
     SampleTransport transport =
         bake_sample_transport(rays, samples,
                               {options.cubemap_size, options.kept, stage.medium.eta,
@@ -258,7 +263,7 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     } else if (!context.cancelled()) {
         stage.tree = build_cluster_tree(
             samples, std::move(transport), options.cubemap_size, options.kept, context,
-            has_environment(options.light) ? kKeptOfLight : kAllCoefficients);
+            has_environment(options.light) ? kKeptOfLight : kAllCoefficients, std::move(apart));
         for (std::size_t b = 0; b < 3 && !walks; ++b) {  // walks hold the difference
             stage.tree.other_factor[b] = static_cast<float>(medium.all_orders[b]);
         }

@@ -91,6 +91,7 @@ SurfaceIntegral make_surface_integral(const formats::Scene& scene, std::uint32_t
     // Samples so dense that R_d is not split, except for the spike of normalised diffusion.
     constexpr double kSpacing = 1e-3;
     SurfaceIntegral integral;
+    integral.bodies = SeparateBodies(scene, material);
     std::vector<std::uint32_t> primitives;
     glm::vec3 low(HUGE_VALF), high(-HUGE_VALF);
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
@@ -100,12 +101,13 @@ SurfaceIntegral make_surface_integral(const formats::Scene& scene, std::uint32_t
     }
     for (const AreaTable::Triangle& place : make_area_table(scene, primitives).triangle) {
         const formats::Primitive& p = scene.primitives[place.primitive];
-        SurfaceIntegral::Triangle triangle{{}, place};
+        SurfaceIntegral::Triangle triangle{{}, place, 0};
         for (std::uint32_t k = 0; k < 3; ++k) {
             triangle.corner[k] = p.position[p.index[place.first_index + k]];
             low = glm::min(low, triangle.corner[k]);
             high = glm::max(high, triangle.corner[k]);
         }
+        triangle.body = integral.bodies.body_at(triangle.corner[0]);
         integral.triangles.push_back(triangle);
     }
     integral.profile = make_gather_profile(
@@ -135,8 +137,9 @@ TwoEstimates integrate_multiple(const SurfaceIntegral& integral, const SurfaceLi
     table.pieces.reserve(integral.triangles.size());
     table.cumulative.reserve(integral.triangles.size());
     Splitter splitter(integral, position, table);
+    const std::uint32_t body = integral.bodies.body_at(position);
     for (std::uint32_t t = 0; t < integral.triangles.size(); ++t) {
-        splitter.add(t);
+        if (integral.triangles[t].body == body) splitter.add(t);
     }
     if (table.pieces.empty()) return estimates;
     const double total = table.cumulative.back();

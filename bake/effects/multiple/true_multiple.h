@@ -7,6 +7,7 @@
 
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/receivers/surface_points.h"
+#include "bake/scene/separate_bodies.h"
 #include "bake/transport/ray_scene.h"
 #include "bake/truth/luminance.h"
 #include "bake/truth/true_irradiance.h"
@@ -22,8 +23,10 @@ struct SurfaceIntegral {
     struct Triangle {
         std::array<glm::vec3, 3> corner;  ///< [m]
         AreaTable::Triangle place;
+        std::uint32_t body = 0;  ///< of `bodies`
     };
     std::vector<Triangle> triangles;
+    SeparateBodies bodies;  ///< through the air between them no light diffuses
     GatherProfile profile;  ///< of samples infinitely dense
     float smallest = 0;     ///< [m] profile length of the densest band
     double scale = 0;       ///< 1 / (pi c_exit)
