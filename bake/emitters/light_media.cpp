@@ -166,10 +166,9 @@ bool is_inside_medium(const formats::Scene& scene, const RayScene& rays, const g
     }
     const PacketHits hits = rays.closest(lanes, packet);
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
-        backs += lanes[i] != 0 && hits.hit[i] != 0 && hits.cosine[i] > 0 &&
-                         scene.materials[hits.material[i]].medium
-                     ? 1
-                     : 0;
+        if (lanes[i] == 0 || hits.hit[i] == 0 || !(hits.cosine[i] > 0)) continue;
+        const auto& medium = scene.materials[hits.material[i]].medium;
+        backs += medium && medium->sigma_s != formats::Rgb{} ? 1 : 0;
     }
     return 2 * backs > started;
 }

@@ -17,8 +17,9 @@
 
 namespace opaline::bake {
 
-/// Whether most of a lamp's power starts inside of media: of the rays from where it starts, in all
-/// directions, most meet the back of a medium's surface first. Such light goes nowhere in a bake.
+/// Whether most of a lamp's power starts inside of media that scatter: of the rays from where it
+/// starts, in all directions, most meet the back of such a medium's surface first. Such light goes
+/// nowhere in a bake.
 bool is_immersed(const formats::Scene& scene, const RayScene& rays, const LampSources& lamp);
 
 /// Watches light of media change from pass to pass, B_i+1 - B_i ~ q^i, and ends the series.

@@ -97,6 +97,10 @@ Choice scatter(const Tracer& tracer, const Arrival& at, const std::array<float, 
     return choice;
 }
 
+bool is_clear(const formats::Scene& scene, const Arrival& at) {
+    return scene.materials[at.material].medium->sigma_s == formats::Rgb{};
+}
+
 Choice cross(const Tracer& tracer, const Arrival& at, const std::array<float, 4>& random,
              Particle& p) {
     const auto onward =
@@ -133,7 +137,7 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
                                 particle_key(tracer.run, particle), flight);
         if (flight == 0) std::ranges::copy(p.first_bounce, x.begin());
         const bool is_medium = lets_through(tracer.scene, *at);
-        if (is_medium && at->side.is_back && flight == 0) return;
+        if (is_medium && at->side.is_back && flight == 0 && !is_clear(tracer.scene, *at)) return;
         const Choice next = is_medium ? cross(tracer, *at, x, p) : scatter(tracer, *at, x, p);
         if (next.power == glm::dvec3(0)) return;
         p.position = leave_surface(p.position, p.direction, *at, next.crosses);

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -113,15 +114,51 @@ formats::Scene bulb_in(std::vector<tests::Primitive> glass_shells, float sigma_a
 }
 
 TEST(LampsInGlass, ABulbInAGlobeShowsThroughIt) {
-    const tests::Primitive outer = tests::make_sphere(3, 0.5f);
-    const formats::Scene scene = bulb_in({outer, turned_inward(tests::make_sphere(3, 0.45f))}, 10);
+    const tests::Primitive outer = tests::make_sphere(2, 0.5f);
+    const formats::Scene scene = bulb_in({outer, turned_inward(tests::make_sphere(2, 0.45f))}, 10);
     EXPECT_NEAR(seen_of_bulb(scene, outer.position.size()), 10 * 0.04 * std::exp(-0.5), 0.02);
 }
 
 TEST(LampsInGlass, ABulbInASolidBallShowsThroughIt) {
-    const tests::Primitive outer = tests::make_sphere(3, 0.5f);
+    const tests::Primitive outer = tests::make_sphere(2, 0.5f);
     EXPECT_NEAR(seen_of_bulb(bulb_in({outer}, 1), outer.position.size()),
                 10 * 0.04 * std::exp(-0.4), 0.02);
+}
+
+// Of index 1.5 it is a lens in which the bulb looks 1.5 times as large, and is 1 / 1.5^2 as bright.
+// What leaves it lights the floor as the bulb alone would, but for what is mirrored back.
+TEST(LampsInGlass, ABulbInASolidBallOfGlassLightsTheFloorAndNoWarningSaysOtherwise) {
+    const tests::Primitive outer = tests::make_sphere(2, 0.5f);
+    tests::Primitive floor = tests::make_quad({-2, -0.6f, -2}, {0, 0, 4}, {4, 0, 0}, 8);
+    const auto lit = [&](float eta) {
+        formats::Scene scene = bulb_in({outer}, 1e-6f);
+        scene.materials[0].medium->eta = eta;
+        floor.material = static_cast<std::uint32_t>(scene.materials.size());
+        floor.node = 2;
+        scene.materials.push_back({.name = "Floor", .base_color = {0.1f, 0.1f, 0.1f}});
+        scene.primitives.push_back(floor);
+        BakeOptions options = seen_straight(1);
+        options.set(kEmitterParticles, 10000);
+        const BakeResult baked = tests::bake_scene(scene, options);
+        for (const formats::Diagnostic& warning : baked.warnings) {
+            EXPECT_EQ(warning.fault.find("inside of"), std::string::npos) << warning.fault;
+        }
+        const auto radiance = show(baked, "black", true);
+        std::array<double, 2> mean{};
+        for (std::size_t v = 0; v < outer.position.size(); ++v) {
+            mean[0] += radiance[v].g / static_cast<double>(outer.position.size());
+        }
+        const std::size_t begin = radiance.size() - floor.position.size();
+        for (std::size_t v = begin; v < radiance.size(); ++v) {
+            mean[1] += radiance[v].g / static_cast<double>(floor.position.size());
+        }
+        return mean;
+    };
+    const auto alone = lit(1), glass = lit(1.5f);
+    EXPECT_NEAR(alone[0], 0.4, 0.02);
+    EXPECT_NEAR(glass[0], alone[0], 0.03);
+    EXPECT_GT(alone[1], 0.002);
+    EXPECT_NEAR(glass[1] / alone[1], 0.97, 0.1);
 }
 
 }  // namespace

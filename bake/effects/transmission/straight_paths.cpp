@@ -114,8 +114,11 @@ class Follower {
                     lane.is_on_its_way = arrive(lane, hits, i, first + i);
                 } else {
                     lane.is_on_its_way = false;
-                    found_.inside.push_back(
-                        {first + i, lane.direction, lane.weight, lane.position});
+                    StraightExit met{first + i, lane.direction, lane.weight, lane.position};
+                    for (float& weight : met.weight) {
+                        weight /= static_cast<float>(body_.eta * body_.eta);
+                    }
+                    found_.inside.push_back(met);
                 }
             }
         }

@@ -52,7 +52,7 @@ struct StraightExit {
 struct StraightLight {
     std::vector<StraightExit> exits;    ///< into the sky
     std::vector<StraightExit> blocked;  ///< toward something that stands before the sky
-    std::vector<StraightExit> inside;   ///< at another material inside, from before it: attenuated
+    std::vector<StraightExit> inside;   ///< at another material inside, from before it: over eta^2
     /// Views that leave at once through a triangle of their own vertex: a smooth surface has none
     /// of these.
     std::vector<std::uint32_t> past;
