@@ -42,6 +42,34 @@ void pass_own_triangles(const RTCFilterFunctionNArguments* arguments) {
     }
 }
 
+/// A query that passes all triangles and remembers them.
+struct CollectingContext {
+    LeavingContext leaving;
+    std::vector<SurfaceHit>& found;
+};
+
+void collect_triangle(const RTCFilterFunctionNArguments* arguments) {
+    pass_own_triangles(arguments);
+    if (arguments->valid[0] == 0) return;
+    arguments->valid[0] = 0;
+    const auto& own = *reinterpret_cast<const CollectingContext*>(arguments->context);
+    const unsigned n = arguments->N;
+    SurfaceHit hit;
+    hit.primitive = own.leaving.triangles.geometry(RTCHitN_geomID(arguments->hit, n, 0)).primitive;
+    hit.triangle = RTCHitN_primID(arguments->hit, n, 0);
+    // The hierarchy may hold a triangle in several parts.
+    if (std::ranges::any_of(own.found, [&](const SurfaceHit& other) {
+            return other.primitive == hit.primitive && other.triangle == hit.triangle;
+        })) {
+        return;
+    }
+    hit.distance = RTCRayN_tfar(arguments->ray, n, 0);
+    hit.u = RTCHitN_u(arguments->hit, n, 0), hit.v = RTCHitN_v(arguments->hit, n, 0);
+    hit.flat = {RTCHitN_Ng_x(arguments->hit, n, 0), RTCHitN_Ng_y(arguments->hit, n, 0),
+                RTCHitN_Ng_z(arguments->hit, n, 0)};
+    own.found.push_back(hit);
+}
+
 glm::vec3 unit_or(glm::vec3 v, glm::vec3 otherwise) {
     const float length = glm::length(v);
     return length > 0 ? v / length : otherwise;
@@ -109,6 +137,22 @@ std::optional<SurfaceHit> HitScene::closest_hit(const RayOrigin& origin, glm::ve
     constexpr float kRoundings = 8 * std::numeric_limits<float>::epsilon();
     hit.error = kRoundings * glm::dot(glm::abs(hit.flat), glm::abs(a) + glm::abs(b) + glm::abs(c));
     return hit;
+}
+
+std::vector<SurfaceHit> HitScene::all_hits(const RayOrigin& origin, glm::vec3 direction,
+                                           float reach, std::uint32_t key) const {
+    std::vector<SurfaceHit> found;
+    if (!(origin.free <= reach)) return found;
+    CollectingContext context{{{}, triangles_, origin}, found};
+    rtcInitIntersectContext(&context.leaving.embree);
+    context.leaving.embree.filter = collect_triangle;
+    RTCRayHit ray{make_ray(origin, direction, origin.free, reach, key), {}};
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(triangles_.handle(), &context.leaving.embree, &ray);
+    for (SurfaceHit& hit : found) {
+        hit.flat = unit_or(hit.flat, -direction);
+    }
+    return found;
 }
 
 bool HitScene::is_blocked(const RayOrigin& origin, glm::vec3 direction, std::uint32_t key) const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <vector>
 
 #include "bake/transport/embree_scene.h"
 #include "formats/opal/result.h"
@@ -68,6 +69,10 @@ class HitScene {
     template <class Visit>
     RayOrigin cross(const RayOrigin& origin, glm::vec3 direction, const SurfaceHit& hit,
                     std::uint32_t key, Visit&& visit) const;
+    /// All triangles within `reach` [m], in no order; of each hit, which and where on it, distance
+    /// and `flat` alone are set.
+    std::vector<SurfaceHit> all_hits(const RayOrigin& origin, glm::vec3 direction, float reach,
+                                     std::uint32_t key) const;
     /// True if there is any.
     bool is_blocked(const RayOrigin& origin, glm::vec3 direction, std::uint32_t key = 0) const;
 
@@ -111,16 +116,15 @@ RayOrigin HitScene::cross(const RayOrigin& origin, glm::vec3 direction, const Su
     const float cosine = std::max(kLeastCosine, std::abs(glm::dot(direction, hit.flat)));
     const float end = hit.distance + rounding_ + 2 * hit.error / cosine;
     visit(hit);
-    for (std::size_t i = 1; i < beyond.triangle.size(); ++i) {
-        const auto other = closest_hit(here, direction, end, key);
-        if (!other) break;
-        here.add({other->primitive, other->triangle});
-        beyond.add({other->primitive, other->triangle});
-        const bool is_at_edge = std::min({other->u, other->v, 1 - other->u - other->v}) < kAtEdge;
-        if (other->primitive != hit.primitive || !is_at_edge) {
-            visit(*other);
+    if (!closest_hit(here, direction, end, key)) return beyond;
+    for (const SurfaceHit& other : all_hits(here, direction, end, key)) {
+        beyond.add({other.primitive, other.triangle});
+        const bool is_at_edge = std::min({other.u, other.v, 1 - other.u - other.v}) < kAtEdge;
+        if (other.primitive != hit.primitive || !is_at_edge) {
+            visit(other);
         }
     }
+    beyond.position = origin.position + end * direction;  // of however many
     return beyond;
 }
 

@@ -289,12 +289,11 @@ PathSample trace_receiver(const PathSpace& space, const ReferenceReceiver& recei
     } else {
         Crossing crossing;
         crossing.beyond = receiver.within;
-        if (receiver.within.empty()) {
-            crossing.beyond = path.stack;
+        if (crossing.beyond.empty()) {
             crossing.beyond.enter(receiver.medium);
         }
         const float ratio =
-            space.scene.media[receiver.medium].eta / index_of(space.scene, path.stack);
+            index_of(space.scene, crossing.beyond) / index_of(space.scene, path.stack);
         crossing.split = split_at_boundary(path.direction, normal, ratio);
         crossing.alpha = space.scene.media[receiver.medium].boundary_alpha;
         crossing.normal = normal;

@@ -55,9 +55,7 @@ struct ReferenceReceiver {
     glm::vec3 base_color{1};
     std::uint32_t medium = formats::kNone;  ///< index into ReferenceScene::media; none: opaque
     SurroundingMedia around;                ///< other bodies that it lies in
-    /// Bodies behind it, where one of its own medium is in front of it; else empty: these and its
-    /// own
-    SurroundingMedia within;
+    SurroundingMedia within;                ///< bodies behind it, of a medium; empty: its own alone
 };
 
 /// One sample of radiance, with the state of its path.

@@ -118,11 +118,11 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
         receiver.medium = scene.medium_of[p.material];
         if (receiver.normal != glm::vec3(0)) {
             receiver.around = surrounding_media(scene, receiver.outside, receiver.normal);
-            if (!receiver.around.empty() && receiver.around.top() == receiver.medium) {
-                // Bodies that touch end where the other begins.
+            if (receiver.medium != formats::kNone) {
                 receiver.within = surrounding_media(scene, receiver.inside, -receiver.normal);
-                if (receiver.within.top() != receiver.medium) {
+                if (!receiver.within.contains(receiver.medium)) {
                     receiver.within = {};
+                    receiver.within.enter(receiver.medium);
                 }
             }
         }

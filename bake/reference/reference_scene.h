@@ -16,7 +16,7 @@ namespace opaline::bake {
 /// A scene prepared for the reference.
 struct ReferenceScene {
     HitScene surfaces;
-    std::vector<ReferenceMedium> media;    ///< of the materials that have one
+    std::vector<ReferenceMedium> media;    ///< of materials that have one, as order_media says
     std::vector<std::uint32_t> medium_of;  ///< by material; formats::kNone: opaque
     bool has_matched_boundary = false;     ///< some medium has an index of 1
     VolumeSpace volumes;                   ///< they fill the space outside of bodies
@@ -39,22 +39,30 @@ inline bool is_matched(float ratio) {
     return ratio > 1 - 1e-5f && ratio < 1 + 1e-5f;
 }
 
-/// The bodies around a point, the last one entered on top: its medium fills the space.
+/// The bodies around a point. Where several overlap, the one of the last medium fills the space:
+/// media are numbered in that order (scene/media_order.h).
 struct SurroundingMedia {
-    static constexpr std::uint32_t kCapacity = 8;
-    std::uint32_t medium[kCapacity] = {};  ///< indices into ReferenceScene::media
+    static constexpr std::uint32_t kCapacity = 8;  ///< of different media
+    struct Bodies {
+        std::uint32_t medium = 0;  ///< index into ReferenceScene::media
+        std::uint32_t count = 0;
+    };
+    Bodies bodies[kCapacity] = {};  ///< ascending by medium
     std::uint32_t size = 0;
 
     bool empty() const { return size == 0; }
-    std::uint32_t top() const { return size > 0 ? medium[size - 1] : formats::kNone; }
-    /// Deeper nesting than the capacity is forgotten.
+    std::uint32_t top() const { return size > 0 ? bodies[size - 1].medium : formats::kNone; }
+    bool contains(std::uint32_t m) const;
+    /// Where there is no room the medium that gives way to all others is forgotten.
     void enter(std::uint32_t m);
-    /// No effect if the body is not on the stack (an open or flipped body).
-    void leave(std::uint32_t m);
+    /// False, and no effect, if no body of the medium is there (an open or flipped body).
+    bool leave(std::uint32_t m);
 };
 
 /// A straight line passes a boundary at `hit`, and those that lie on it. `stack` becomes that
-/// beyond. Returns the start of a line there.
+/// beyond. Where several lie there, or the line meets an edge, or it leaves a body that it was not
+/// in, the bodies beyond are counted anew, in the middle of the way to the next surface. Returns
+/// the start of a line there.
 RayOrigin cross_boundary(const ReferenceScene& scene, const RayOrigin& origin, glm::vec3 direction,
                          const SurfaceHit& hit, std::uint32_t key, SurroundingMedia& stack);
 
