@@ -1,11 +1,30 @@
 #include "bake/exchange/exchange_points.h"
 
+#include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "bake/exchange/bounce_light.h"
+#include "bake/transport/bodies_at.h"
 
 namespace opaline::bake {
 namespace {
+
+// Not those in or against other bodies.
+void leave_out_hidden_points(const LightInputs& inputs, std::uint32_t material,
+                             std::vector<Scatterer>& spread) {
+    const BodiesAt bodies(inputs.bake.scene, inputs.bake.rays.hierarchy());
+    std::vector<std::uint8_t> is_own(inputs.bake.scene.materials.size());
+    is_own[material] = 1;
+    if (std::ranges::none_of(inputs.bake.facts.material[material].inner,
+                             [](const InnerMedium& inner) { return inner.depth == 0; }) &&
+        !bodies.has_faces_on_faces(inputs.bake.scene, is_own)) {
+        return;
+    }
+    std::erase_if(spread, [&](const Scatterer& s) {
+        return bodies.material_at(s.position + 2 * bodies.touch() * s.normal) != formats::kNone;
+    });
+}
 
 // Light enters a medium where no receiver looks, too: points all over those that are seen.
 void add_spread(const LightInputs& inputs, std::vector<Scatterer>& scatterers) {
@@ -16,9 +35,28 @@ void add_spread(const LightInputs& inputs, std::vector<Scatterer>& scatterers) {
     }
     for (std::uint32_t m = 0; m < is_seen.size(); ++m) {
         if (is_seen[m] == 0) continue;
-        const std::vector<Scatterer> spread = spread_over_material(inputs, m, kEvenPoints);
+        std::vector<Scatterer> spread = spread_over_material(inputs, m, kEvenPoints);
+        leave_out_hidden_points(inputs, m, spread);
         scatterers.insert(scatterers.end(), spread.begin(), spread.end());
     }
+}
+
+// The first material of those whose media meet or lie in each other, of each material.
+std::vector<std::uint32_t> group_media(const SceneFacts& facts) {
+    std::vector<std::uint32_t> first(facts.material.size());
+    std::iota(first.begin(), first.end(), 0u);
+    bool changes = true;
+    while (changes) {
+        changes = false;
+        for (std::uint32_t m = 0; m < first.size(); ++m) {
+            for (const InnerMedium& inner : facts.material[m].inner) {
+                std::uint32_t &a = first[m], &b = first[inner.material];
+                changes = changes || a != b;
+                a = b = std::min(a, b);
+            }
+        }
+    }
+    return first;
 }
 
 }  // namespace
@@ -27,10 +65,15 @@ ExchangePoints place_exchange(const LightInputs& inputs, std::uint64_t& rays) {
     ExchangePoints points{find_scatterers(inputs, count_scatterers(inputs.rays_of_receiver), rays)};
     if (points.scatterers.empty()) return points;
     add_spread(inputs, points.scatterers);
+    const std::vector<std::uint32_t> first = group_media(inputs.bake.facts);
     std::vector<std::vector<std::uint32_t>> members(inputs.layouts.size());
     for (std::uint32_t i = 0; i < points.scatterers.size(); ++i) {
         const std::uint32_t material = points.scatterers[i].material;
-        if (inputs.layouts[material].translucent) members[material].push_back(i);
+        if (inputs.layouts[material].translucent) members[first[material]].push_back(i);
+    }
+    for (auto& own : members) {
+        std::ranges::stable_sort(own, {},
+                                 [&](std::uint32_t i) { return points.scatterers[i].material; });
     }
     std::erase_if(members, [](const auto& own) { return own.empty(); });
     if (members.empty()) return points;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "bake/exchange/bounce_tree.h"
@@ -20,19 +21,26 @@ struct ExchangePoints {
     std::optional<BounceTree> tree{};    ///< of scatterers, without rows, where there are media
     std::vector<std::uint32_t> patch{};  ///< of scatterers that lie on media
 
-    std::uint32_t material_of(const MediumAnswer& medium) const {
-        return scatterers[medium.members.front()].material;
+    std::uint32_t material_of(const MediumAnswer& medium, std::size_t member) const {
+        return scatterers[medium.members[member]].material;
     }
     /// Irradiance 1 on one patch of a medium at a time. The points must outlive it.
     PatchLight light_of(const MediumAnswer& medium) const {
-        return {PatchLight::Scatterers{scatterers, *tree, medium.members}, patch};
+        PatchLight::Scatterers points{scatterers, *tree, medium.members, {}};
+        for (std::size_t m = 0; m < medium.members.size(); ++m) {
+            if (m == 0 || material_of(medium, m) != material_of(medium, m - 1)) {
+                points.materials.push_back(material_of(medium, m));
+            }
+        }
+        return {std::move(points), patch};
     }
 };
 
 /// Counts `rays`.
 ExchangePoints place_exchange(const LightInputs& inputs, std::uint64_t& rays);
 
-/// What effects say of one medium, at its members in their order. All may be empty.
+/// What effects say of one answer, at its members in their order. All may be empty, and so may be
+/// rows of members for which no effect says anything.
 struct MediumRows {
     /// T_k, terms * bands * 6 n n values each, n = kBounceCubemap: of light on one patch at a time
     /// what it scatters, and of the environment's what crosses it straight.

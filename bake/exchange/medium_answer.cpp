@@ -16,11 +16,12 @@ namespace {
 constexpr std::size_t kPlane = kMostPatches;
 
 // The dipole may return more than enters, as its half space ends nowhere; walks' rows vary.
-void bound(MediumAnswer& answer, float most) {
+void bound(MediumAnswer& answer, std::span<const float> enters) {
     for (std::uint32_t to = 0; to < answer.patches; ++to) {
         const std::span<BandColour> row =
             std::span(answer.share).subspan(std::size_t{to} * answer.patches, answer.patches);
         const BandColour sum = answer.sum_of(to);
+        const float most = enters[to];
         for (std::size_t b = 0; b < sum.size(); ++b) {
             if (!(sum[b] > most)) continue;
             for (BandColour& share : row) {
@@ -46,12 +47,21 @@ MediumAnswer cut_medium(std::span<const Scatterer> scatterers, std::span<const f
                         std::vector<std::uint32_t> members) {
     MediumAnswer answer;
     answer.members = std::move(members);
-    std::vector<BodyPoint> inside;
-    for (const std::uint32_t i : answer.members) {
-        inside.push_back(scatterers[i].inside);
+    // Each material has patches of its own.
+    const std::size_t all = answer.members.size();
+    for (std::size_t begin = 0, end = 0; begin < all; begin = end) {
+        std::vector<BodyPoint> inside;
+        const std::uint32_t material = scatterers[answer.members[begin]].material;
+        while (end < all && scatterers[answer.members[end]].material == material) {
+            inside.push_back(scatterers[answer.members[end++]].inside);
+        }
+        const std::size_t most = std::max<std::size_t>(1, kMostPatches * inside.size() / all);
+        const std::vector<std::uint32_t> own = cut_into_patches(inside, most);
+        for (const std::uint32_t p : own) {
+            answer.patch.push_back(answer.patches + p);
+        }
+        answer.patches += 1 + std::ranges::max(own);
     }
-    answer.patch = cut_into_patches(inside, kMostPatches);
-    answer.patches = 1 + std::ranges::max(answer.patch);
     // Cells of scatterers at one place have no area.
     constexpr float kNoArea = 1e-30f;
     std::vector<float> area(answer.patches);
@@ -69,16 +79,20 @@ void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers
                 std::span<const std::vector<float>> rows, MediumAnswer& answer) {
     if (inputs.context.cancelled() || rows.empty()) return;
     assert(rows.size() == answer.members.size());
-    const std::uint32_t material = scatterers[answer.members.front()].material;
-    const RowLayout& layout = inputs.layouts[material];
-    const float eta = inputs.bake.scene.materials[material].medium->eta;
-    std::vector<float> count(answer.patches);
+    std::vector<float> count(answer.patches), enters(answer.patches);
     for (const std::uint32_t p : answer.patch) {
         count[p] += 1;
     }
-    const std::uint32_t own_bands = layout.bands();
     for (std::size_t m = 0; m < rows.size(); ++m) {
         const std::uint32_t to = answer.patch[m];
+        const std::uint32_t material = scatterers[answer.members[m]].material;
+        const RowLayout& layout = inputs.layouts[material];
+        const std::uint32_t own_bands = layout.bands();
+        const float eta = inputs.bake.scene.materials[material].medium->eta;
+        if (!(enters[to] > 0)) {
+            enters[to] = static_cast<float>(1 - fresnel_moments(double{eta}).external);
+        }
+        if (rows[m].empty()) continue;
         const std::vector<float> weight =
             weigh_rows_of_medium(layout, eta, scatterers[answer.members[m]].inside.normal);
         for (std::size_t k = 0; k < weight.size(); ++k) {
@@ -95,7 +109,7 @@ void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers
     for (BandColour& share : answer.share) {
         std::ranges::for_each(share, [](float& s) { s = std::max(s, 0.0f); });
     }
-    bound(answer, static_cast<float>(1 - fresnel_moments(double{eta}).external));
+    bound(answer, enters);
 }
 
 void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterers,

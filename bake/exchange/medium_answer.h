@@ -15,13 +15,13 @@ namespace opaline::bake {
 /// By band; of one band the first.
 using BandColour = std::array<float, 3>;
 
-/// What scatters back out of a medium: one operator for light of the sky and of other surfaces, so
-/// that no light is created between them. Light that enters a patch of the surface leaves every
-/// patch with a share of it. Shares of what arrives at once everywhere add up to no more than what
-/// enters, 1 - F_ext: with K of the rays between surfaces, whose shares add up to 1, no surface is
-/// brighter than the sky around it.
+/// What scatters back out of a medium, or of several that meet or lie in each other: one operator
+/// for light of the sky and of other surfaces, so that no light is created between them. Light that
+/// enters a patch of the surface leaves every patch with a share of it. Shares of what arrives at
+/// once everywhere add up to no more than what enters, 1 - F_ext: with K of the rays between
+/// surfaces, whose shares add up to 1, no surface is brighter than the sky around it.
 struct MediumAnswer {
-    std::vector<std::uint32_t> members;  ///< scatterers on the medium
+    std::vector<std::uint32_t> members;  ///< scatterers on it, material by material
     std::vector<std::uint32_t> patch;    ///< of each of them
     std::vector<float> part;             ///< of each of them: its share of its patch's area
     std::uint32_t patches = 0;
@@ -33,15 +33,15 @@ struct MediumAnswer {
     BandColour sum_of(std::uint32_t to) const;
 };
 
-/// Patches of one medium, at most: columns of the rows that say what it answers.
+/// Patches of one answer, at most: columns of the rows that say what it answers.
 inline constexpr std::uint32_t kMostPatches = 6 * kBounceCubemap * kBounceCubemap;
 
-/// The scatterers `members`, all of one medium, in patches; its shares are 0. `cells`: areas of all
-/// scatterers [m^2].
+/// The scatterers `members`, material by material, in patches of one material each; its shares are
+/// 0. `cells`: areas of all scatterers [m^2].
 MediumAnswer cut_medium(std::span<const Scatterer> scatterers, std::span<const float> cells,
                         std::vector<std::uint32_t> members);
 
-/// Sets its shares from rows that its effects make at its members of light on one patch each; they
+/// Sets its shares from rows that effects make at its members of light on one patch each; they
 /// stay 0 where no effect scatters.
 void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers,
                 std::span<const std::vector<float>> rows, MediumAnswer& answer);

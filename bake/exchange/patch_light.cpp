@@ -12,13 +12,21 @@ namespace opaline::bake {
 namespace {
 
 std::uint32_t nearest_scatterer(const PatchLight::Scatterers& points, const Receiver& at) {
-    const std::uint32_t first = points.members.front();
-    const std::uint32_t node =
-        points.tree.find(at.origin, {points.all[first].material, false, at.normal}, 0);
-    if (node != formats::kNone) return points.tree.scatterer_of(node);
-    // No scatterer faces that way.
     float least = std::numeric_limits<float>::max();
-    std::uint32_t nearest = first;
+    std::uint32_t nearest = formats::kNone;
+    for (const std::uint32_t material : points.materials) {
+        const std::uint32_t node = points.tree.find(at.origin, {material, false, at.normal}, 0);
+        if (node == formats::kNone) continue;
+        const std::uint32_t found = points.tree.scatterer_of(node);
+        const glm::vec3 d = points.all[found].position - at.origin;
+        if (glm::dot(d, d) < least) {
+            least = glm::dot(d, d);
+            nearest = found;
+        }
+    }
+    if (nearest != formats::kNone) return nearest;
+    // No scatterer faces that way.
+    nearest = points.members.front();
     for (const std::uint32_t i : points.members) {
         const glm::vec3 d = points.all[i].position - at.origin;
         const float square =

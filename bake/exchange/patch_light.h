@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 #include <variant>
+#include <vector>
 
 #include "bake/exchange/bounce_tree.h"
 #include "bake/exchange/scatterers.h"
@@ -14,11 +15,13 @@ namespace opaline::bake {
 
 /// Irradiance 1 on one patch of a medium's surface at a time: a column for each patch.
 struct PatchLight {
-    /// A place is in the patch of the scatterer nearest to it that faces its way.
+    /// A place is in the patch of the scatterer nearest to it that faces its way, whatever its
+    /// material.
     struct Scatterers {
         std::span<const Scatterer> all;
         const BounceTree& tree;                  ///< of all
-        std::span<const std::uint32_t> members;  ///< those of the medium
+        std::span<const std::uint32_t> members;  ///< those of the media
+        std::vector<std::uint32_t> materials;    ///< of these
     };
     /// A place is in the patch of the receiver nearest to where a ray straight down meets the
     /// medium; in none if it meets something else.

@@ -106,7 +106,6 @@ std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
                            const MediumAnswer& answer, std::span<const std::vector<float>> crossing,
                            CodedRows& irradiance) {
     const std::span<const std::uint32_t> members = answer.members;
-    const std::uint32_t material = field.scatterers[members.front()].material;
     const std::uint32_t bands = field.light.bands;
     std::uint64_t rays = 0;
     for_each_block_in_order(
@@ -130,10 +129,12 @@ std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
         [&](Range, std::uint64_t traced) { rays += traced; });
     if (crossing.empty() || field.inputs.context.cancelled()) return rays;
     field.light.crossing.resize(field.scatterers.size());
-    const RowLayout& layout = field.inputs.layouts[material];
-    const float eta = field.inputs.bake.scene.materials[material].medium->eta;
     std::vector<float> leaving(field.light.row_size());
     for (std::size_t m = 0; m < crossing.size(); ++m) {
+        if (crossing[m].empty()) continue;
+        const std::uint32_t material = field.scatterers[members[m]].material;
+        const RowLayout& layout = field.inputs.layouts[material];
+        const float eta = field.inputs.bake.scene.materials[material].medium->eta;
         std::ranges::fill(leaving, 0.0f);
         const glm::vec3 normal = field.scatterers[members[m]].inside.normal;
         add_leaving(layout, weigh_rows_of_medium(layout, eta, normal), crossing[m], bands, leaving);

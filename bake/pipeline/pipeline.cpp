@@ -25,6 +25,7 @@
 #include "bake/scene/even_media.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/transport/hidden_receivers.h"
+#include "bake/transport/stand_ins.h"
 #include "bake/transport/touching_triangles.h"
 #include "bake/volumes/place_nodes.h"
 #include "bake/volumes/plan_volumes.h"
@@ -33,13 +34,19 @@
 namespace opaline::bake {
 namespace {
 
-std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const RayScene& rays,
-                                         const Context& context) {
+std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const SceneFacts& facts,
+                                         const RayScene& rays, const Context& context) {
     std::vector<Receiver> vertices =
         leave_touching_triangles(rays.hierarchy(), scene, make_vertex_receivers(scene), context);
-    const std::vector<BodyPoint> inside = make_body_points(scene, vertices);
-    return make_vertex_sets(
-        scene, replace_hidden_receivers(rays, scene, std::move(vertices), context), inside);
+    std::vector<BodyPoint> inside = make_body_points(scene, vertices);
+    vertices = replace_hidden_receivers(rays, scene, std::move(vertices), context);
+    const std::vector<std::uint32_t> stand_in =
+        find_stand_ins(scene, facts, rays.hierarchy(), context);
+    for (std::size_t v = 0; v < stand_in.size(); ++v) {
+        vertices[v] = vertices[stand_in[v]];
+        inside[v] = inside[stand_in[v]];
+    }
+    return make_vertex_sets(scene, vertices, inside);
 }
 
 // The plan after the studies: rules decide again with their findings.
@@ -248,8 +255,9 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         hierarchy = std::move(*built);
     }
     const RayScene& rays = hierarchy ? *hierarchy : *sky;
-    const std::vector<ReceiverSet> receivers = run_stage(
-        log, "receivers", [&](std::uint64_t&) { return place_receivers(scene, rays, context); });
+    const std::vector<ReceiverSet> receivers = run_stage(log, "receivers", [&](std::uint64_t&) {
+        return place_receivers(scene, result.facts, rays, context);
+    });
     BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
     std::optional<ScenePyramids> textures;
     if (const auto filtered = filtered_materials(

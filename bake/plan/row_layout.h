@@ -22,6 +22,7 @@ struct RowLayout {
     bool layered = false;              ///< light goes through other media inside its own
     /// No row holds what crosses the medium unscattered: it counts as bright as what scatters.
     bool fills_crossed = false;
+    bool crosses = false;        ///< rows hold what crosses its own medium alone unscattered
     bool at_entry = false;       ///< light leaves the medium where it entered
     bool separate = false;       ///< the row for all views is apart from the harmonics
     bool sheet = false;          ///< a row for each side that it may be seen from

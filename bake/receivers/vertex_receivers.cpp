@@ -20,8 +20,9 @@ struct Fans {
     std::unordered_map<glm::vec3, std::uint32_t, PositionHash> point;
     std::vector<std::uint32_t> offset;
     std::vector<glm::vec3> normal;
-    std::vector<glm::vec3> corner;  // the two other corners of each triangle
-    std::vector<float> extent;      // largest coordinate difference from the point to a corner
+    std::vector<const Primitive*> primitive;  // of each triangle
+    std::vector<glm::vec3> corner;            // the two other corners of each triangle
+    std::vector<float> extent;  // largest coordinate difference from the point to a corner
 };
 
 float largest_coordinate(glm::vec3 p) {
@@ -41,12 +42,12 @@ Fans collect_fans(const Scene& scene) {
                                              p.position[p.index[3 * t + 1]],
                                              p.position[p.index[3 * t + 2]]};
                 for (std::size_t k = 0; k < 3; ++k) {
-                    visit(weld_key(corner[k]), normal, corner[(k + 1) % 3], corner[(k + 2) % 3]);
+                    visit(p, weld_key(corner[k]), normal, corner[(k + 1) % 3], corner[(k + 2) % 3]);
                 }
             }
         }
     };
-    for_each_corner([&](glm::vec3 at, glm::vec3, glm::vec3 a, glm::vec3 b) {
+    for_each_corner([&](const Primitive&, glm::vec3 at, glm::vec3, glm::vec3 a, glm::vec3 b) {
         const auto [it, added] =
             fans.point.try_emplace(at, static_cast<std::uint32_t>(fans.point.size()));
         if (added) {
@@ -63,16 +64,28 @@ Fans collect_fans(const Scene& scene) {
         sum += std::exchange(entry, sum);
     }
     fans.normal.resize(sum);
+    fans.primitive.resize(sum);
     fans.corner.resize(2 * std::size_t{sum});
     std::vector<std::uint32_t> filled(fans.extent.size(), 0);
-    for_each_corner([&](glm::vec3 at, glm::vec3 normal, glm::vec3 a, glm::vec3 b) {
-        const std::uint32_t point = fans.point.find(at)->second;
-        const std::size_t slot = fans.offset[point] + filled[point]++;
-        fans.normal[slot] = normal;
-        fans.corner[2 * slot] = a;
-        fans.corner[2 * slot + 1] = b;
-    });
+    for_each_corner(
+        [&](const Primitive& p, glm::vec3 at, glm::vec3 normal, glm::vec3 a, glm::vec3 b) {
+            const std::uint32_t point = fans.point.find(at)->second;
+            const std::size_t slot = fans.offset[point] + filled[point]++;
+            fans.normal[slot] = normal;
+            fans.primitive[slot] = &p;
+            fans.corner[2 * slot] = a;
+            fans.corner[2 * slot + 1] = b;
+        });
     return fans;
+}
+
+// In front of the triangles of one primitive alone.
+Clearance clearance_of(const Fans& fans, std::uint32_t point, const Primitive& primitive) {
+    std::vector<glm::vec3> own;
+    for (std::uint32_t i = fans.offset[point]; i < fans.offset[point + 1]; ++i) {
+        if (fans.primitive[i] == &primitive) own.push_back(fans.normal[i]);
+    }
+    return clearest_direction(own);
 }
 
 // Height of a point's triangles above its tangent plane [m].
@@ -146,7 +159,10 @@ std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
             const glm::vec3 normal = primitive.normal[v];
             Receiver receiver{position, normal};
             if (const auto it = fans.point.find(weld_key(position)); it != fans.point.end()) {
-                const Clearance c = clearance[it->second];
+                Clearance c = clearance[it->second];
+                if (!(c.cosine > kLeastClearance) && scene.materials[primitive.material].medium) {
+                    c = clearance_of(fans, it->second, primitive);
+                }
                 const float bound = clearance_bound(position, fans.extent[it->second]);
                 receiver.origin +=
                     c.cosine > kLeastClearance

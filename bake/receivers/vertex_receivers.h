@@ -19,7 +19,8 @@ namespace opaline::bake {
 ///    perceptron iteration; clearance: the smallest cosine between d and their normals;
 /// bound: clearance_bound at the vertex.
 /// Duplicated vertices therefore get identical origins, and no seam.
-/// Where no d is in front of all triangles (a point whose triangles are folded over each other, as
+/// Where no d is in front of all triangles, d of a medium's vertex is in front of those of its own
+/// primitive: another body lies against it. Where there is none either (a point whose triangles are folded over each other, as
 /// scans and decimation leave them), rays start along the shading normal above the fold, which
 /// would else be a black speck.
 std::vector<Receiver> make_vertex_receivers(const formats::Scene& scene);

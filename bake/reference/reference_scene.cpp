@@ -104,8 +104,11 @@ SurroundingMedia surrounding_media(const ReferenceScene& scene, glm::vec3 point,
     const glm::vec3 side = glm::normalize(
         glm::cross(up, std::abs(up.x) > 0.7f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
     std::vector<std::vector<int>> votes;
-    for (const float tilt : {0.03f, -1.1f, 0.8f}) {
-        votes.push_back(count_leaving(scene, point, glm::normalize(up + tilt * side)));
+    const glm::vec3 across = glm::cross(up, side);
+    // In no plane of common models: a line through an edge would meet both of its triangles.
+    for (const glm::vec2 tilt : {glm::vec2(0.13f, 0.037f), {-0.91f, 0.617f}, {0.43f, -0.674f}}) {
+        votes.push_back(
+            count_leaving(scene, point, glm::normalize(up + tilt.x * side + tilt.y * across)));
     }
     for (std::uint32_t m = 0; m < scene.media.size(); ++m) {
         std::array<int, 3> count{votes[0][m], votes[1][m], votes[2][m]};

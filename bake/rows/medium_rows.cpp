@@ -65,6 +65,18 @@ MediumRows ask_medium(const BakeInputs& bake, const Knobs& knobs, const Context&
     return rows;
 }
 
+// Rows of the members from `begin` on, of `count`; what is empty stays so.
+void put_rows(MediumRows part, std::size_t begin, std::size_t count, MediumRows& all) {
+    const auto put = [&](auto& from, auto& to) {
+        if (from.empty()) return;
+        to.resize(count);
+        std::ranges::move(from, to.begin() + static_cast<std::ptrdiff_t>(begin));
+    };
+    put(part.scattered, all.scattered);
+    put(part.crossing, all.crossing);
+    put(part.through, all.through);
+}
+
 }  // namespace
 
 Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size) {
@@ -85,16 +97,21 @@ std::vector<MediumRows> ask_media(const BakeInputs& bake, const Knobs& knobs,
                                   std::vector<SubjectState>& subjects, std::uint64_t& rays) {
     std::vector<MediumRows> rows;
     for (const MediumAnswer& medium : points.media) {
-        ReceiverSet at;
-        for (const std::uint32_t i : medium.members) {
-            at.outside.push_back(points.scatterers[i].outside);
-            at.inside.push_back(points.scatterers[i].inside);
-        }
         const PatchLight columns = points.light_of(medium);
         const OtherLight patches{.patches = &columns, .bands = 1, .environment = false};
-        SubjectState& own =
-            *std::ranges::find(subjects, points.material_of(medium), &SubjectState::material);
-        rows.push_back(ask_medium(bake, knobs, context, own, patches, at, rays));
+        MediumRows& all = rows.emplace_back();
+        const std::size_t count = medium.members.size();
+        for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+            const std::uint32_t material = points.material_of(medium, begin);
+            ReceiverSet at;
+            for (; end < count && points.material_of(medium, end) == material; ++end) {
+                const Scatterer& s = points.scatterers[medium.members[end]];
+                at.outside.push_back(s.outside);
+                at.inside.push_back(s.inside);
+            }
+            SubjectState& own = *std::ranges::find(subjects, material, &SubjectState::material);
+            put_rows(ask_medium(bake, knobs, context, own, patches, at, rays), begin, count, all);
+        }
     }
     return rows;
 }

@@ -81,7 +81,7 @@ constexpr int kMostLooks = 1'000'000;
 // half of it; to 0 where they are so near that they may meet. Keeps it where it is lower already.
 void lower_to_gap(const HorizonTree& surface, const Triangle& triangle, int depth, int& looks,
                   double& least) {
-    constexpr int kDeepest = 8;
+    constexpr int kDeepest = 14;
     const glm::dvec3 middle =
         (glm::dvec3(triangle[0]) + glm::dvec3(triangle[1]) + glm::dvec3(triangle[2])) / 3.0;
     double radius = 0;
@@ -143,11 +143,11 @@ bool reaches_into(const HorizonTree& outer, const Surface& of) {
         of.body.shell, [&](const BodyShell& shell) { return reaches_into(outer, of, shell); });
 }
 
-// How deep [m] any of the inner surface lies inside the outer one; infinity: none does. Marks
-// shells that lie inside altogether.
+// How deep [m] any of the inner surface lies inside the outer one, 0 where they meet; infinity:
+// none does. Marks shells that lie inside altogether.
 double find_depth(const Surface& outer, Surface& inner, int& looks) {
     double least = std::numeric_limits<double>::infinity();
-    bool is_met = false;
+    bool is_near = false, is_met = false;
     for (std::size_t s = 0; s < inner.body.shell.size(); ++s) {
         const BodyShell& shell = inner.body.shell[s];
         double gap = std::numeric_limits<double>::infinity();
@@ -155,13 +155,41 @@ double find_depth(const Surface& outer, Surface& inner, int& looks) {
             lower_to_gap(outer.tree, inner.triangle(i), 0, looks, gap);
         }
         const bool is_in = reaches_into(outer.tree, inner, shell);
-        is_met = is_met || gap == 0;
+        is_near = is_near || gap == 0;
+        is_met = is_met || (gap == 0 && looks >= 0);
         if (is_in) {
             least = std::min(least, gap);
         }
         inner.is_buried[s] = inner.is_buried[s] || (is_in && gap > 0);
     }
-    return is_met && least > 0 && reaches_into(inner.tree, outer) ? 0 : least;
+    if (is_met) return 0;
+    return is_near && least > 0 && reaches_into(inner.tree, outer) ? 0 : least;
+}
+
+// Light that goes into one body goes on into those that this one meets or holds.
+void add_indirect(SceneFacts& facts) {
+    bool changes = true;
+    while (changes) {
+        changes = false;
+        for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
+            std::vector<InnerMedium>& own = facts.material[m].inner;
+            for (std::size_t i = 0; i < own.size(); ++i) {
+                for (InnerMedium next : facts.material[own[i].material].inner) {
+                    if (next.material == m ||
+                        std::ranges::find(own, next.material, &InnerMedium::material) !=
+                            own.end()) {
+                        continue;
+                    }
+                    next.depth = own[i].depth;
+                    own.push_back(std::move(next));
+                    changes = true;
+                }
+            }
+        }
+    }
+    for (MaterialFacts& own : facts.material) {
+        std::ranges::sort(own.inner, {}, &InnerMedium::material);
+    }
 }
 
 bool boxes_meet(const MaterialFacts& a, const MaterialFacts& b) {
@@ -197,6 +225,7 @@ void find_nested_media(const formats::Scene& scene, SceneFacts& facts) {
             }
         }
     }
+    add_indirect(facts);
     for (std::uint32_t m = 0; m < count; ++m) {
         MaterialFacts& own = facts.material[m];
         const std::vector<bool>& is_buried = surfaces[m].is_buried;

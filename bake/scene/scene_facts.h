@@ -20,10 +20,11 @@ struct Horizon {
     double behind_facets = 0;
 };
 
-/// Another medium inside a body.
+/// Another medium inside a body, or beside it, where both touch or overlap.
 struct InnerMedium {
     std::uint32_t material = 0;
-    /// Lower bound [m], at least half, of the distance between both surfaces; 0: they meet.
+    /// Lower bound [m], at least half, of the distance between both surfaces; 0: they meet. Of one
+    /// that others lie between, the distance of the first of these.
     double depth = 0;
     formats::Medium medium;
 };
@@ -75,7 +76,7 @@ struct MaterialFacts {
     double brightest = 1;
     Surroundings surroundings;  ///< the same of all materials
 
-    std::vector<InnerMedium> inner;  ///< of a medium: others that lie inside it
+    std::vector<InnerMedium> inner;  ///< of a medium: others that light inside it may come to
     bool is_buried = false;          ///< a medium all of whose surface lies inside others
 
     bool is_grey = false;  ///< a medium or sheet whose numbers, and those of media inside it, are

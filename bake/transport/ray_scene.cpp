@@ -32,7 +32,7 @@ RTCRayHit16 intersect(RTCScene triangles, const LaneMask& lanes, const RayPacket
 }  // namespace
 
 formats::Result<RayScene> RayScene::build(const formats::Scene& scene, unsigned threads) {
-    auto triangles = EmbreeScene::build(scene, threads);
+    auto triangles = EmbreeScene::build(scene, threads, true);
     if (!triangles) return std::move(triangles).error();
     return RayScene(std::move(*triangles));
 }

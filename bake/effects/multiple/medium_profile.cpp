@@ -75,7 +75,7 @@ ModelError measure(const EffectInputs& inputs, std::size_t receivers, double noi
     const Pilot pilot{
         make_sun_rays(lights, kRaysPerSun), make_smooth_lights(lights),
         make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(), inputs.material,
-                        inputs.layout.bands() == 1, inner_materials(inputs))};
+                        inputs.layout.bands() == 1, inner_materials(inputs), meets_others(inputs))};
     PilotSquares sum;
     for_each_block_in_order(
         points.size(), 1, inputs.context,
@@ -212,7 +212,8 @@ ModelError measure_views(const EffectInputs& inputs, const MediumProfile& profil
                 profile.exit,     kFromEach,  -into};
             const auto key = static_cast<std::uint32_t>(number * set.into.size() + seen.size());
             seen.push_back(walk_to_lights(pilot.space, light, point,
-                                          {1, false, inputs.layout.fills_crossed},
+                                          {1, false, inputs.layout.fills_crossed,
+                                           inputs.layout.layered && inputs.layout.crosses},
                                           inputs.knobs.seed, key, squares.rays));
         }
         compare_views(set, seen, squares);

@@ -152,7 +152,9 @@ PreparedPtr take_samples(const EffectInputs& inputs, std::uint64_t& rays) {
                                        inputs.layout.fills_crossed,
                                        inner_materials(inputs),
                                        inputs.layout.layered,
-                                       light_of(inputs)},
+                                       light_of(inputs),
+                                       meets_others(inputs),
+                                       inputs.layout.layered && inputs.layout.crosses},
                                       inputs.context);
     rays += samples->stage.rays;
     return samples;
@@ -200,9 +202,9 @@ PreparedPtr make_truth(const EffectInputs& inputs, TruthEffort effort,
         truth->integral =
             make_surface_integral(inputs.bake.scene, inputs.material, profile_of(inputs.own));
     } else {
-        truth->space =
-            make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(), inputs.material,
-                            inputs.layout.bands() == 1, inner_materials(inputs));
+        truth->space = make_walk_space(inputs.bake.scene, inputs.bake.rays.hierarchy(),
+                                       inputs.material, inputs.layout.bands() == 1,
+                                       inner_materials(inputs), meets_others(inputs));
         truth->lobe = make_exit_lobe(profile_of(inputs.own).eta);
     }
     truth->suns = make_sun_rays(lights, kRaysPerSun, inputs.bake.between);
@@ -234,7 +236,7 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
          truth.points, seen_of(inputs, receiver), other},
         receiver.inside,
         {inputs.layout.all_orders ? 1u : 2u, !inputs.layout.all_orders && other != nullptr,
-         inputs.layout.fills_crossed},
+         inputs.layout.fills_crossed, inputs.layout.layered && inputs.layout.crosses},
         inputs.knobs.seed, receiver.key, rays);
 }
 

@@ -16,6 +16,7 @@
 #include "bake/exchange/other_light.h"
 #include "bake/plan/knobs.h"
 #include "bake/receivers/surface_samples.h"
+#include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -80,28 +81,94 @@ struct EnteringLight {
     const SparseVectors& other;
 };
 
-void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering, double walks,
-          const MultipleOptions& options, const Context& context, MultipleStage& stage) {
-    const ExitLight light(
-        entering.samples, entering.rows,
-        ExitCells(entering.samples, options.cubemap_size, make_exit_lobe(stage.medium.eta)),
-        stage.medium.exit, options.light == nullptr ? nullptr : &entering.other);
+// Light that enters through another body that walks leave by.
+struct OtherBody {
+    std::uint32_t material = 0;
+    double eta = 1;
+    std::vector<SurfaceSample> samples;
+    SampleTransport transport;
+};
+
+// Not those that lie in or on another body.
+void leave_out_hidden(const WalkSpace& space, std::vector<SurfaceSample>& samples) {
+    if (!space.bodies) return;
+    std::vector<SurfaceSample> seen;
+    for (const SurfaceSample& s : samples) {
+        const glm::vec3 before = s.position + 2 * space.bodies->touch() * s.geometric_normal;
+        if (bodies_around(space, before).empty()) seen.push_back(s);
+    }
+    if (!seen.empty()) {
+        samples = std::move(seen);
+    }
+}
+
+// As dense as those of the space's own material.
+std::vector<OtherBody> light_others(const WalkSpace& space, const RayScene& rays, double per_sample,
+                                    const MultipleOptions& options, const Context& context) {
+    std::vector<OtherBody> others;
+    if (!space.bodies) return others;
+    const formats::Scene& scene = *space.scene;
+    for (const std::uint32_t m : space.bodies->order()) {
+        if (m == space.material || space.medium_of[m] == kNoWalkMedium) continue;
+        std::vector<std::uint32_t> primitives;
+        double area = 0;
+        for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+            if (scene.primitives[p].material != m) continue;
+            primitives.push_back(p);
+            area += formats::surface_area(scene.primitives[p]);
+        }
+        constexpr double kFewest = 500;
+        const double count = std::clamp(area / per_sample, kFewest,
+                                        std::max(kFewest, static_cast<double>(options.samples)));
+        OtherBody body{m,
+                       static_cast<double>(scene.materials[m].medium->eta),
+                       sample_surface(scene, primitives, static_cast<std::uint32_t>(count),
+                                      options.seed, context),
+                       {}};
+        leave_out_hidden(space, body.samples);
+        if (body.samples.empty()) continue;
+        body.transport = bake_sample_transport(rays, body.samples,
+                                               {options.cubemap_size, options.kept, body.eta,
+                                                options.share_rays, options.light, kKeptOfLight},
+                                               context);
+        others.push_back(std::move(body));
+    }
+    return others;
+}
+
+ExitLight exit_light(const EnteringLight& entering, double eta, double escape,
+                     const MultipleOptions& options) {
+    return ExitLight(entering.samples, entering.rows,
+                     ExitCells(entering.samples, options.cubemap_size, make_exit_lobe(eta)), escape,
+                     options.light == nullptr ? nullptr : &entering.other);
+}
+
+void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& entering,
+          std::span<const OtherBody> others, double walks, const MultipleOptions& options,
+          const Context& context, MultipleStage& stage) {
+    ExitLight light = exit_light(entering, stage.medium.eta, stage.medium.exit, options);
+    for (const OtherBody& body : others) {
+        light.add_body(body.material,
+                       exit_light({body.samples, body.transport.rows, body.transport.other},
+                                  body.eta, 1 - fresnel_moments(body.eta).external, options));
+    }
     const bool is_inside = !plan.is_residual && options.all_orders && space.media.size() == 1 &&
-                           !space.media.front().field;
+                           !space.media.front().field && !space.bodies;
     const WalkStageOptions wanted{
         .radius = plan.radius,
         .walks = walks,
         .is_inside = is_inside,
         .views = options.views,
         .served = options.served,
-        .rows = {
-            .cubemap_size = options.cubemap_size,
-            .kept = kept_of(options),
-            .bands = options.bands,
-            .seed = options.seed,
-            .orders = {options.all_orders ? 1u : 2u,
-                       !options.all_orders && options.light != nullptr, options.fills_crossed}}};
-    const std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
+        .rows = {.cubemap_size = options.cubemap_size,
+                 .kept = kept_of(options),
+                 .bands = options.bands,
+                 .seed = options.seed,
+                 .orders = {options.all_orders ? 1u : 2u,
+                            !options.all_orders && options.light != nullptr, options.fills_crossed,
+                            options.crosses_others}}};
+    std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
+    leave_out_hidden(space, sites);
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));
     std::function<void(std::size_t, std::span<float>)> subtract;
     if (!stage.tree.nodes.empty()) {
@@ -239,7 +306,11 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     const bool walks = options.model == MultipleModel::walks;
     stage.model = options.model;
     SitePlan plan;
+    std::optional<WalkSpace> space;
     if (walks) {
+        space.emplace(make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1,
+                                      options.inner, options.meet));
+        leave_out_hidden(*space, samples);
         plan = plan_sites(area, diagonal_of(scene, material), path, options.walks);
         plan.is_residual = plan.is_residual && !options.layered;
         widen_for_receivers(plan, area, diagonal_of(scene, material), options.receivers);
@@ -270,14 +341,14 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
     }
     if (walks && !context.cancelled()) {
         const double all_walks = count_walks(plan, area, options.walks);
-        WalkSpace space =
-            make_walk_space(scene, bodies.hierarchy(), material, options.bands == 1, options.inner);
-        add_balls(space, all_walks, options.seed, context);
+        add_balls(*space, all_walks, options.seed, context);
+        const std::vector<OtherBody> others =
+            light_others(*space, rays, per_sample, options, context);
         const bool has_tree = !stage.tree.nodes.empty();
-        walk(space, plan,
+        walk(*space, plan,
              {samples, has_tree ? stage.tree.samples : light,
               has_tree ? stage.tree.other_samples : other},
-             all_walks, options, context, stage);
+             others, all_walks, options, context, stage);
     }
     return stage;
 }

@@ -54,6 +54,8 @@ struct MultipleOptions {
     std::vector<std::uint32_t> inner{};  ///< materials of other media inside, for walks
     bool layered = false;                ///< and these matter: the dipole cannot be used
     const OtherLight* light = nullptr;   ///< besides, or instead of, that of the environment
+    bool meet = false;                   ///< surfaces of these media touch or overlap
+    bool crosses_others = false;         ///< as WalkOrders says
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,

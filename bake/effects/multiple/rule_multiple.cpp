@@ -177,6 +177,11 @@ std::vector<std::uint32_t> inner_materials(const EffectInputs& inputs) {
     return materials;
 }
 
+bool meets_others(const EffectInputs& inputs) {
+    return std::ranges::any_of(inputs.bake.facts.material[inputs.material].inner,
+                               [](const InnerMedium& inner) { return inner.depth == 0; });
+}
+
 void warn_of_layers(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings) {
     const formats::Scene& scene = inputs.bake.scene;
     std::string names;

@@ -34,6 +34,9 @@ const PlanEntry* earlier_entry(const PlanInput& input, std::string_view name);
 /// The materials of the media inside. Walks need them whether the rule is on or off.
 std::vector<std::uint32_t> inner_materials(const EffectInputs& inputs);
 
+/// Whether the body touches or overlaps some of these.
+bool meets_others(const EffectInputs& inputs);
+
 /// Warns where the model in use ignores them.
 void warn_of_layers(const EffectInputs& inputs, std::vector<formats::Diagnostic>& warnings);
 

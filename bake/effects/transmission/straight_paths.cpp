@@ -164,7 +164,23 @@ class Follower {
                            [&](std::uint32_t v) { return p.position[v] == vertex_; });
     }
 
+    // A face of another body lies on this one.
+    bool is_against_other(const Lane& lane, const BoundaryHit& at) const {
+        if (!body_.bodies) return false;
+        constexpr float kGrazing = 0.1f;
+        const float reach =
+            body_.bodies->touch() / std::max(kGrazing, std::abs(glm::dot(lane.direction, at.flat)));
+        bool is_met = false;
+        body_.bodies->visit_crossed(at.position - reach * lane.direction, lane.direction, 2 * reach,
+                                    [&](std::uint32_t place, bool) {
+                                        is_met = is_met ||
+                                                 body_.bodies->order()[place] != body_.material;
+                                    });
+        return is_met;
+    }
+
     bool leave(Lane& lane, const BoundaryHit& at, std::uint32_t view) {
+        if (is_against_other(lane, at)) return false;
         const auto mirrored = [&](glm::vec3 n) {
             return lane.direction - 2 * glm::dot(lane.direction, n) * n;
         };
@@ -242,6 +258,10 @@ StraightBody make_straight_body(const EffectInputs& inputs) {
     body.sky = &inputs.outside();
     body.material = inputs.material;
     body.eta = static_cast<double>(medium.eta);
+    if (std::ranges::any_of(inputs.bake.facts.material[inputs.material].inner,
+                            [](const InnerMedium& inner) { return inner.depth == 0; })) {
+        body.bodies.emplace(inputs.bake.scene, inputs.bake.rays.hierarchy());
+    }
     const formats::Rgb sigma_t = medium.sigma_s + medium.sigma_a;
     body.sigma_t = {sigma_t.r, sigma_t.g, sigma_t.b};
     body.bands = inputs.layout.bands();
@@ -255,11 +275,21 @@ StraightStart make_straight_start(const StraightBody& body, const BodyPoint& poi
                                   std::uint64_t& rays) {
     const InwardPath path = trace_inward_path(*body.rays, point, kInfinity);
     rays += path.steps.size();
-    return {point.inner, std::max(1, shells_at(path, 0)), point.position};
+    StraightStart start{point.inner, std::max(1, shells_at(path, 0)), point.position};
+    if (body.bodies) {
+        std::vector<int> around;
+        body.bodies->count(point.inner, around);
+        for (std::size_t p = 0; p < around.size(); ++p) {
+            start.is_in_others =
+                start.is_in_others || (around[p] > 0 && body.bodies->order()[p] != body.material);
+        }
+    }
+    return start;
 }
 
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
                               std::span<const glm::vec3> seen, StraightLight& found) {
+    if (start.is_in_others) return 0;
     Follower follower(body, found);
     for (std::size_t first = 0; first < seen.size(); first += kLanes) {
         follower.follow(start,

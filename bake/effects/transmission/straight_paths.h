@@ -9,6 +9,7 @@
 
 #include "bake/plan/effect.h"
 #include "bake/scene/medium_field.h"
+#include "bake/transport/bodies_at.h"
 #include "bake/transport/ray_scene.h"
 #include "formats/scene.h"
 
@@ -24,6 +25,7 @@ struct StraightBody {
     std::array<float, 3> sigma_t{};      ///< [1/m]; scattering included: it takes light away too
     std::uint32_t bands = 3;             ///< 1: the first stands for all
     std::optional<MediumField> field{};  ///< where its density varies: scales sigma_t
+    std::optional<BodiesAt> bodies{};    ///< where it touches or overlaps others
 };
 
 /// All must outlive the result.
@@ -31,9 +33,10 @@ StraightBody make_straight_body(const EffectInputs& inputs);
 
 /// Where views through a body start.
 struct StraightStart {
-    glm::vec3 position{0};    ///< [m], just inside
-    std::int32_t shells = 1;  ///< of the medium, around the point: >= 1
-    glm::vec3 vertex{0};      ///< [m], on the boundary: corner of the triangles around it
+    glm::vec3 position{0};      ///< [m], just inside
+    std::int32_t shells = 1;    ///< of the medium, around the point: >= 1
+    glm::vec3 vertex{0};        ///< [m], on the boundary: corner of the triangles around it
+    bool is_in_others = false;  ///< other bodies are there as well: no view stays in its own
 };
 
 /// The start of a receiver's views. `rays` counts up.
@@ -63,9 +66,9 @@ inline constexpr float kLeastStraightWeight = 0x1p-12f;
 
 /// Follows views straight through a body, backwards from the eye (README.md, "The paths"): at each
 /// arrival at the boundary the transmitted share is an exit, and the reflected share goes on.
-/// `seen`: unit directions inside, away from the body, toward the eye. Light from other materials
-/// inside goes no further, and light through a hole is none. Appends to `found`. Returns the rays
-/// traced. Any thread.
+/// `seen`: unit directions inside, away from the body, toward the eye. Views that meet other bodies
+/// go no further (`multiple` has their light), and light through a hole is none. Appends to
+/// `found`. Returns the rays traced. Any thread.
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
                               std::span<const glm::vec3> seen, StraightLight& found);
 

@@ -184,6 +184,7 @@ constexpr std::array<DecisionRule, 2> kRules{
     {{"transmission", has_medium, decide_transmission,
       [](const PlanEntry& entry, RowLayout& layout) {
           layout.constant = layout.constant || entry.on;
+          layout.crosses = entry.on;
           layout.fills_crossed = !entry.on && entry.all_orders;
       },
       nullptr, formats::TermSet::unscattered},

@@ -42,12 +42,29 @@ TEST(NestedMedia, BodiesBesideEachOtherContainNothing) {
         EXPECT_TRUE(facts[0].inner.empty() && facts[1].inner.empty()) << distance;
         EXPECT_FALSE(facts[0].is_buried || facts[1].is_buried) << distance;
     }
-    Primitive beside = make_cube(2, false);
-    for (glm::vec3& p : beside.position) {
-        p.x += 2;  // one face in common
+}
+
+// Light goes on from one into the other: a face in common, and a third body on the second.
+TEST(NestedMedia, BodiesThatTouchHaveEachOtherAtNoDepthAndAllThatTheOthersTouch) {
+    const auto cube_at = [](glm::vec3 at) {
+        Primitive cube = make_cube(2, false);
+        for (glm::vec3& p : cube.position) {
+            p += at;
+        }
+        return cube;
+    };
+    const auto facts = inspect({{cube_at({0, 0, 0}), coat()},
+                                {cube_at({2, 0, 0}), core()},
+                                {cube_at({4, 0.3f, 0}), coat()},
+                                {cube_at({0, 2.001f, 0}), core()}});
+    for (std::uint32_t m = 0; m < 3; ++m) {
+        ASSERT_EQ(facts[m].inner.size(), 2u) << m;
+        EXPECT_EQ(facts[m].inner[0].depth, 0);
+        EXPECT_FALSE(facts[m].is_buried);
     }
-    const auto facts = inspect({{make_cube(2, false), coat()}, {beside, core()}});
-    EXPECT_TRUE(facts[0].inner.empty() && facts[1].inner.empty());
+    EXPECT_EQ(facts[0].inner[0].material, 1u);
+    EXPECT_EQ(facts[0].inner[1].material, 2u);
+    EXPECT_TRUE(facts[3].inner.empty()) << "a gap";
 }
 
 TEST(NestedMedia, ABodyInACavityOfAnotherIsNotInIt) {

@@ -7,13 +7,18 @@ namespace {
 
 using bake::MediumStack;
 
-TEST(MediumStack, TheBodyEnteredLastFillsTheSpaceUntilItIsLeft) {
+TEST(MediumStack, TheLastInTheirOrderFillsTheSpaceWhicheverWasEnteredFirst) {
     MediumStack stack(0, 1);
     EXPECT_TRUE(stack.enter(1));
     EXPECT_EQ(stack.top(), 1);
     stack.leave(0);  // overlapping bodies: left in another order than entered
     EXPECT_EQ(stack.top(), 1);
+    EXPECT_TRUE(stack.enter(0));
+    EXPECT_EQ(stack.top(), 1);
+    EXPECT_TRUE(stack.contains(0));
     stack.leave(1);
+    EXPECT_TRUE(stack.is_only(0));
+    stack.leave(0);
     EXPECT_TRUE(stack.empty());
 }
 
@@ -52,7 +57,7 @@ TEST(MediumStack, WhatALeftBodyPartedIsOneAgain) {
 
 TEST(MediumStack, LeavingABodyThatWasNeverEnteredChangesNothing) {
     MediumStack stack(0, 2);
-    stack.leave(5);
+    EXPECT_FALSE(stack.leave(5));
     EXPECT_EQ(stack.top(), 0);
     stack.leave(0);
     stack.leave(0);

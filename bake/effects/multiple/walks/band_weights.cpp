@@ -31,8 +31,8 @@ BandWeights::BandWeights(const WalkSpace& space, const WalkGroup& group)
         for (std::size_t b = 0; b < 3; ++b) {
             if (space.bands[g].member[b]) {
                 group_[b] = g;
-                has_light_[b] = std::ranges::any_of(
-                    space.media, [b](const WalkMedium& medium) { return medium.albedo[b] > 0; });
+                // What crosses several clear bodies counts as well.
+                has_light_[b] = space.media.size() > 1 || space.media.front().albedo[b] > 0;
             }
         }
     }

@@ -24,6 +24,10 @@ class ExitLight {
     ExitLight(std::span<const SurfaceSample> samples, const SparseVectors& light,
               std::optional<ExitCells> cells, double escape, const SparseVectors* other = nullptr);
 
+    /// The same of another body that light leaves, of a boundary of its own: exits of that material
+    /// look there. Its samples are numbered after the others.
+    void add_body(std::uint32_t material, ExitLight light);
+
     /// The nearest sample that faces as the exit does; where there is none, the nearest.
     /// Precondition: there are samples.
     std::uint32_t nearest(const WalkExit& exit, std::vector<std::uint32_t>& around) const;
@@ -48,16 +52,26 @@ class ExitLight {
                    const TexelRow& rows) const;
 
   private:
-    std::span<const SurfaceSample> samples_;
-    const SparseVectors& light_;
-    std::optional<ExitCells> cells_;
-    std::vector<ExitCells::Averages> averages_;  // of each sample's vector
-    const SparseVectors* other_;
-    float scale_;  // 1 / (pi c_exit)
-    PointGrid grid_;
-    // Of each cell of the grid, the samples in it and around it: exits are many.
-    std::vector<std::uint32_t> first_{0};  // cells + 1, into around_
-    std::vector<std::uint32_t> around_;
+    // Samples of one boundary.
+    struct Part {
+        std::uint32_t material = formats::kNone;  // the first: of all that have no part
+        std::uint32_t begin = 0;                  // number of its first sample
+        std::span<const SurfaceSample> samples;
+        const SparseVectors* light;
+        std::optional<ExitCells> cells;
+        std::vector<ExitCells::Averages> averages;  // of each sample's vector
+        const SparseVectors* other;
+        float scale;  // 1 / (pi c_exit)
+        PointGrid grid;
+        // Of each cell of the grid, the samples in it and around it: exits are many.
+        std::vector<std::uint32_t> first{0};  // cells + 1, into around
+        std::vector<std::uint32_t> around;
+
+        std::uint32_t nearest(const WalkExit& exit, std::vector<std::uint32_t>& around_exit) const;
+    };
+    const Part& part_of(std::uint32_t& sample) const;
+
+    std::vector<Part> parts_;
 };
 
 }  // namespace opaline::bake

@@ -30,6 +30,7 @@ WalkHit describe_hit(const WalkSpace& space, const FoundTriangle& found, glm::ve
     hit.u = found.u, hit.v = found.v;
     hit.is_own = geometry.material == space.material;
     hit.medium = space.medium_of[geometry.material];
+    hit.place = space.place_of[geometry.material];
     const formats::Primitive& p = space.scene->primitives[hit.primitive];
     const std::uint32_t* corner = &p.index[hit.first_index];
     const glm::vec3 a = (1 - hit.u - hit.v) * p.position[corner[0]];

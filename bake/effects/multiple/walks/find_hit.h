@@ -22,6 +22,7 @@ struct WalkHit {
     float error = 0;        ///< bound [m] on the distance of `position` from the triangle
     bool is_own = false;    ///< of the space's material
     std::uint8_t medium = kNoWalkMedium;           ///< of its body: WalkSpace::medium_of
+    std::uint16_t place = 0;                       ///< of its material: WalkSpace::place_of
     std::uint32_t primitive = 0, first_index = 0;  ///< of its triangle: Primitive::index
     float u = 0, v = 0;                            ///< weights of its second and third corner
 };

@@ -6,62 +6,68 @@
 
 namespace opaline::bake {
 
-/// The bodies around a point, the one entered last on top: its medium fills the space. Bodies of
-/// one medium that follow one another are counted, so that only changes of medium take room.
+/// The bodies around a point. Where several overlap, the one whose material is the last in their
+/// order (scene/media_order.h) fills the space; a surface of any other is none there. Bodies of one
+/// material are counted.
 class MediumStack {
   public:
-    static constexpr std::size_t kCapacity = 12;
+    static constexpr std::size_t kCapacity = 12;  ///< materials
 
-    MediumStack(std::uint8_t medium, int bodies) : size_(1) { entry_[0] = {medium, bodies}; }
+    MediumStack() = default;
+    /// `place`: of a material in their order.
+    MediumStack(std::uint16_t place, int bodies) : size_(1) { entry_[0] = {place, bodies}; }
 
     bool empty() const { return size_ == 0; }
+    bool is_only(std::uint16_t place) const { return size_ == 1 && entry_[0].place == place; }
+    bool contains(std::uint16_t place) const {
+        for (std::size_t i = 0; i < size_; ++i) {
+            if (entry_[i].place == place) return true;
+        }
+        return false;
+    }
     /// Precondition: it is not empty.
-    std::uint8_t top() const { return entry_[size_ - 1].medium; }
+    std::uint16_t top() const { return entry_[size_ - 1].place; }
 
     /// False: there is no room, and nothing changes.
-    bool enter(std::uint8_t medium) {
-        if (size_ > 0 && top() == medium) {
-            ++entry_[size_ - 1].bodies;
+    bool enter(std::uint16_t place) {
+        std::size_t at = size_;
+        while (at > 0 && entry_[at - 1].place > place) {
+            --at;
+        }
+        if (at > 0 && entry_[at - 1].place == place) {
+            ++entry_[at - 1].bodies;
             return true;
         }
         if (size_ == kCapacity) return false;
-        entry_[size_++] = {medium, 1};
+        for (std::size_t i = size_++; i > at; --i) {
+            entry_[i] = entry_[i - 1];
+        }
+        entry_[at] = {place, 1};
         return true;
     }
 
-    /// Of the bodies of that medium, the one entered last. No effect where there is none: then a
-    /// mesh is open or turned inside out.
-    void leave(std::uint8_t medium) {
-        for (std::size_t i = size_; i-- > 0;) {
-            if (entry_[i].medium == medium) {
-                if (--entry_[i].bodies == 0) {
-                    remove(i);
+    /// False, and nothing changes, where there is no such body: then a mesh is open or turned
+    /// inside out.
+    bool leave(std::uint16_t place) {
+        for (std::size_t i = 0; i < size_; ++i) {
+            if (entry_[i].place != place) continue;
+            if (--entry_[i].bodies == 0) {
+                for (--size_; i < size_; ++i) {
+                    entry_[i] = entry_[i + 1];
                 }
-                return;
             }
+            return true;
         }
+        return false;
     }
 
   private:
     struct Entry {
-        std::uint8_t medium = 0;
+        std::uint16_t place = 0;
         int bodies = 0;
     };
 
-    void remove(std::size_t i) {
-        // Its neighbours become one entry where they are of one medium.
-        const bool joins = i > 0 && i + 1 < size_ && entry_[i - 1].medium == entry_[i + 1].medium;
-        if (joins) {
-            entry_[i - 1].bodies += entry_[i + 1].bodies;
-        }
-        const std::size_t gone = joins ? 2 : 1;
-        for (std::size_t j = i; j + gone < size_; ++j) {
-            entry_[j] = entry_[j + gone];
-        }
-        size_ -= gone;
-    }
-
-    std::array<Entry, kCapacity> entry_{};
+    std::array<Entry, kCapacity> entry_{};  // ascending
     std::size_t size_ = 0;
 };
 

@@ -176,11 +176,17 @@ std::vector<WalkStart> make_walk_starts(const WalkSpace& space,
                 const SurfaceSample& s = sites[i];
                 constexpr float kRoundings = 64 * std::numeric_limits<float>::epsilon();
                 const glm::vec3 a = glm::abs(s.position);
-                const float error = kRoundings * std::max({a.x, a.y, a.z});
+                float error = kRoundings * std::max({a.x, a.y, a.z});
+                if (space.bodies) {
+                    error = std::max(error, 2 * space.bodies->touch());
+                }
                 WalkStart start{s.position - error * s.geometric_normal, s.normal,
                                 s.geometric_normal, 1};
                 start.shells =
                     std::max(1, count_shells(space, start.position, -s.geometric_normal));
+                if (space.bodies) {
+                    start.around = bodies_at_start(space, start.position);
+                }
                 part.push_back(start);
             }
             return part;

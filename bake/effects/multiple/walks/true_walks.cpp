@@ -8,6 +8,7 @@
 #include "bake/effects/multiple/walks/walk.h"
 #include "bake/exchange/true_bounces.h"
 #include "bake/receivers/surface_samples.h"
+#include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {
@@ -32,18 +33,32 @@ double luminance_of(const WalkExit& exit, bool is_grey) {
     return is_grey ? static_cast<double>(exit.weight[0]) : sum;
 }
 
+// What exits of each medium see, where walks leave other bodies than their own.
+struct Boundary {
+    ExitLobe lobe;
+    double escape = 1;
+};
+std::vector<Boundary> boundaries_of(const WalkSpace& space) {
+    std::vector<Boundary> all;
+    for (const WalkMedium& medium : space.media) {
+        const auto eta = static_cast<double>(medium.eta);
+        all.push_back({make_exit_lobe(eta), 1 - fresnel_moments(eta).external});
+    }
+    return all;
+}
+
 // Light at an exit as the irradiance of even light that is as bright there. Hardly any exit meets a
 // sun: they look at it through a lobe.
-std::uint64_t add_light(const WalkLight& light, const SurfaceSample& at, const WalkExit& exit,
-                        glm::vec2 u, std::span<double> irradiance) {
+std::uint64_t add_light(const WalkLight& light, const Boundary& boundary, const SurfaceSample& at,
+                        const WalkExit& exit, glm::vec2 u, std::span<double> irradiance) {
     const std::uint64_t rays =
-        add_sun_irradiance(light.rays, light.suns, at.receiver, light.lobe.eta, irradiance,
-                           light.lobe.eval(at.normal, exit.direction));
+        add_sun_irradiance(light.rays, light.suns, at.receiver, boundary.lobe.eta, irradiance,
+                           boundary.lobe.eval(at.normal, exit.direction));
     if (glm::dot(at.normal, exit.direction) > 0) {
         return rays + add_smooth_radiance(light.rays, light.smooth, at.receiver, exit.direction,
-                                          std::numbers::pi * light.escape, irradiance);
+                                          std::numbers::pi * boundary.escape, irradiance);
     }
-    return rays + add_smooth_irradiance(light.rays, light.smooth, at.receiver, light.lobe.eta, u,
+    return rays + add_smooth_irradiance(light.rays, light.smooth, at.receiver, boundary.lobe.eta, u,
                                         irradiance);
 }
 
@@ -68,6 +83,12 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
     WalkStart start{point.inner, point.normal, point.normal,
                     std::max(1, count_shells(space, point.inner, -point.normal)), light.seen};
     start.vertex = point.position;
+    if (space.bodies) {
+        start.around = bodies_at_start(space, point.inner);
+    }
+    const Boundary own{light.lobe, light.escape};
+    const std::vector<Boundary> others =
+        space.bodies && space.media.size() > 1 ? boundaries_of(space) : std::vector<Boundary>();
     std::vector<WalkExit> exits;
     std::array<double, 3> seen_bands{};
     for (const WalkBands& bands : space.bands) {
@@ -110,18 +131,21 @@ TwoEstimates walk_to_lights(const WalkSpace& space, const WalkLight& light, cons
                 0);
             std::ranges::fill(irradiance, 0.0);
             const glm::vec2 u{random.next(), random.next()};
+            const Boundary& boundary = others.empty() || exit->material == space.material
+                                           ? own
+                                           : others[space.medium_of[exit->material]];
             if (!exit->is_once) {
-                traced += add_light(light, at, *exit, u, irradiance);
+                traced += add_light(light, boundary, at, *exit, u, irradiance);
             }
             if (light.other != nullptr) {
                 std::ranges::fill(diffuse, 0.0);
                 traced += add_true_bounces(*light.other, at.receiver,
                                            std::uint64_t{key} << 32 | walk, 1, diffuse);
                 for (std::size_t l = 0; l < lights; ++l) {
-                    irradiance[l] += light.escape * diffuse[l];
+                    irradiance[l] += boundary.escape * diffuse[l];
                 }
             }
-            const double weight = sum / (std::numbers::pi * light.escape * light.walks);
+            const double weight = sum / (std::numbers::pi * boundary.escape * light.walks);
             for (std::size_t l = 0; l < lights; ++l) {
                 (*estimate)[l] += weight * irradiance[l];
             }

@@ -59,7 +59,12 @@ class Walk {
           random_(random),
           exits_(exits),
           counts_(counts),
-          bodies_(0, start.shells) {}
+          bodies_(
+              start.around.value_or(MediumStack(space.place_of[space.material], start.shells))) {
+        if (medium_here() != 0) {
+            weight_.enter(medium_here());
+        }
+    }
 
     glm::vec3 follow(const WalkStart& start) {
         ++counts_.walks;
@@ -73,6 +78,9 @@ class Walk {
         position_ = start_ = start.position;
         vertex_ = start.vertex;
         free_.set(position_, 0, start.depth);
+        if (!bodies_.is_only(space_.place_of[space_.material])) {
+            meet_other();
+        }
         if (start.arrival != glm::vec3(0)) {
             direction_ = start.arrival;
             if (collide(0)) {
@@ -103,7 +111,7 @@ class Walk {
     }
 
     const BallBank* balls() const {
-        return bodies_.top() < space_.balls.size() ? space_.balls[bodies_.top()].get() : nullptr;
+        return medium_here() < space_.balls.size() ? space_.balls[medium_here()].get() : nullptr;
     }
 
     // Whether a ball of the bank fits here. Where the grid is too coarse to decide, searches for
@@ -145,15 +153,27 @@ class Walk {
     }
 
     void count_scatterings(std::uint32_t count) {
-        if (scatterings_ == 0) {
-            count_absorbed();
-            add_left(1, counts_.scattered);
-        }
+        take_as_scattered();
         scatterings_ += count;
     }
 
+    void take_as_scattered() {
+        if (is_scattered_) return;
+        count_absorbed();
+        add_left(1, counts_.scattered);
+        is_scattered_ = true;
+    }
+
+    // Straight light in another body is what no other row holds.
+    void meet_other() {
+        if (orders_.crosses_others && !is_scattered_) {
+            take_as_scattered();
+            is_straight_ = true;
+        }
+    }
+
     // Of the light that the walk carries.
-    WalkEnds& ends() { return scatterings_ > 0 ? counts_.ends : counts_.straight; }
+    WalkEnds& ends() { return is_scattered_ ? counts_.ends : counts_.straight; }
 
     void count_absorbed() {
         const std::array<double, 3> taken = weight_.take_absorbed();
@@ -188,7 +208,8 @@ class Walk {
         WalkHit hit;
         ++counts_.rays;
         // Beyond another medium's surface the walk may still scatter.
-        if (!find_hit(space_, position_, direction_, reach, hit) || is_entered(hit)) {
+        if (space_.bodies || !find_hit(space_, position_, direction_, reach, hit) ||
+            is_entered(hit)) {
             return fly(flight_length());
         }
         const float distance = glm::length(hit.position - position_);
@@ -243,39 +264,87 @@ class Walk {
         direction_ = scatter(medium().phase, direction_, u, random_.next());
     }
 
-    const WalkMedium& medium() const { return space_.media[bodies_.top()]; }
+    std::uint8_t medium_here() const { return space_.medium_at[bodies_.top()]; }
+    const WalkMedium& medium() const { return space_.media[medium_here()]; }
 
     // Of another medium that walks go into.
     bool is_entered(const WalkHit& hit) const {
         return hit.medium != 0 && hit.medium != kNoWalkMedium;
     }
 
+    // What lies beyond a surface that the walk has met.
+    struct Far {
+        MediumStack bodies;
+        float side = 1;  // where the triangle's normal points along the walk, else -1
+        float lift = 0;  // [m], clear of the surface
+        bool has_room = true, meets_other = false;
+    };
+
     bool arrive(const WalkHit& hit) {
         if (hit.medium == kNoWalkMedium) return meet();
-        length_ += glm::distance(hit.position, position_);
+        const float way = glm::distance(hit.position, position_);
+        length_ += way;
         free_.set(hit.position, 0, 0);
-        const float side = glm::dot(direction_, hit.flat) > 0 ? 1.0f : -1.0f;
-        MediumStack beyond = bodies_;
-        if (side > 0) {
-            beyond.leave(hit.medium);
-        } else if (!beyond.enter(hit.medium)) {
-            return give_up(counts_.buried);
+        Far far{bodies_, glm::dot(direction_, hit.flat) > 0 ? 1.0f : -1.0f, 2 * hit.error, true,
+                !hit.is_own};
+        if (space_.bodies) {
+            cross_all(hit, way, far);
+        } else if (far.side > 0) {
+            far.bodies.leave(hit.place);
+        } else {
+            far.has_room = far.bodies.enter(hit.place);
         }
-        if (beyond.empty()) return hit.is_own ? arrive_at_boundary(hit) : meet();
-        return beyond.top() == bodies_.top() ? pass(hit, side, beyond)
-                                             : change_medium(hit, side, beyond);
+        if (!far.has_room) return give_up(counts_.buried);
+        if (far.meets_other) {
+            meet_other();
+        }
+        if (far.bodies.empty()) {
+            return hit.is_own || space_.bodies ? arrive_at_boundary(hit, far) : meet();
+        }
+        return space_.medium_at[far.bodies.top()] == medium_here() ? pass(hit, far)
+                                                                   : change_medium(hit, far);
     }
 
-    bool pass(const WalkHit& hit, float side, const MediumStack& beyond) {
-        bodies_ = beyond;
-        position_ = hit.position + side * 2 * hit.error * hit.flat;
+    // Faces that lie on one another are crossed as one. Where there are several, at an edge, or
+    // where the walk leaves what it was not in, the bodies beyond are counted anew, in the middle
+    // of the way to the next surface.
+    void cross_all(const WalkHit& hit, float way, Far& far) {
+        constexpr float kAtEdge = 1e-4f, kGrazing = 0.1f;
+        const BodiesAt& bodies = *space_.bodies;
+        const float reach =
+            bodies.touch() / std::max(kGrazing, std::abs(glm::dot(direction_, hit.flat)));
+        const float back = std::min(0.5f * way, reach);
+        int met = 0;
+        bodies.visit_crossed(hit.position - back * direction_, direction_, back + reach,
+                             [&](std::uint32_t, bool) { ++met; });
+        const bool is_alone = met <= 1 && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) > kAtEdge;
+        if (is_alone &&
+            (far.side < 0 ? far.bodies.enter(hit.place) : far.bodies.leave(hit.place))) {
+            return;
+        }
+        far.meets_other = far.meets_other || met > 1;
+        far.lift = bodies.touch();
+        ++counts_.rays;
+        const glm::vec3 from = hit.position + reach * direction_;
+        WalkHit next;
+        far.bodies = find_hit(space_, from, direction_, kForever, next)
+                         ? bodies_around(space_, 0.5f * (from + next.position))
+                         : MediumStack();
+    }
+
+    bool pass(const WalkHit& hit, const Far& far) {
+        bodies_ = far.bodies;
+        position_ = hit.position + far.side * far.lift * hit.flat;
         return true;
     }
 
-    // `side`: 1 where the triangle's normal points along the walk, else -1. Light of one surface is
-    // either reflected or refracted, as Fresnel's reflectance says, with unchanged weights.
-    bool change_medium(const WalkHit& hit, float side, const MediumStack& beyond) {
-        const float ratio = space_.media[beyond.top()].eta / medium().eta;
+    // Light of one surface is either reflected or refracted, as Fresnel's reflectance says, with
+    // unchanged weights.
+    bool change_medium(const WalkHit& hit, const Far& far) {
+        const float side = far.side;
+        const std::uint8_t beyond = space_.medium_at[far.bodies.top()];
+        const float ratio = space_.media[beyond].eta / medium().eta;
+        meet_other();
         if (!is_matched(ratio)) {
             const glm::vec3 flat = side * hit.flat;
             glm::vec3 refracted;
@@ -302,42 +371,45 @@ class Walk {
             }
             if (!(random_.next() < transmittance(std::min(1.0f, cosine), ratio))) {
                 is_reflected_ = true;
-                position_ = hit.position - 2 * hit.error * flat;
+                position_ = hit.position - far.lift * flat;
                 direction_ = glm::normalize(reflect_at(normal));
                 return true;
             }
             direction_ = refracted;
         }
         has_changed_ = true;
-        weight_.enter(beyond.top());
-        return pass(hit, side, beyond);
+        weight_.enter(beyond);
+        return pass(hit, far);
     }
 
-    bool arrive_at_boundary(const WalkHit& hit) {
-        const glm::vec3 normal = inner_boundary_normal(space_, hit, direction_);
+    bool arrive_at_boundary(const WalkHit& hit, const Far& far) {
+        const glm::vec3 flat = far.side * hit.flat;
+        const glm::vec3 normal =
+            far.side > 0 ? inner_boundary_normal(space_, hit, direction_) : flat;
         const float cosine = std::min(1.0f, glm::dot(direction_, normal));
-        const float passed = transmittance(cosine, 1 / space_.eta);
-        const bool counts =
-            scatterings_ >= orders_.least || (scatterings_ > 0 && (is_reflected_ || has_changed_));
+        const float passed = transmittance(cosine, 1 / medium().eta);
+        const bool counts = scatterings_ >= orders_.least || is_straight_ ||
+                            (scatterings_ > 0 && (is_reflected_ || has_changed_));
         if (passed > 0 && (counts || (orders_.marks_once && scatterings_ > 0))) {
             leave(hit, normal, cosine, passed);
             exits_.back().is_once = !counts;
         }
-        if (scatterings_ == 0 &&
+        if (!is_scattered_ &&
             (orders_.fills_crossed || (!is_reflected_ && is_around_vertex(space_, hit, vertex_)))) {
             add_left(passed, counts_.filled);
         }
         add_left(passed, ends().left);
         is_reflected_ = true;
-        position_ = hit.position - 2 * hit.error * hit.flat;
+        position_ = hit.position - far.lift * flat;
         direction_ = glm::normalize(direction_ - 2 * glm::dot(direction_, normal) * normal);
         return weight_.scale(1 - passed) && survives();
     }
 
     void leave(const WalkHit& hit, glm::vec3 normal, float cosine, float passed) {
+        const float eta = medium().eta;
         const auto outside = static_cast<float>(
-            refracted_cosine(static_cast<double>(cosine), 1 / static_cast<double>(space_.eta)));
-        const glm::vec3 along = space_.eta * (direction_ - cosine * normal);
+            refracted_cosine(static_cast<double>(cosine), 1 / static_cast<double>(eta)));
+        const glm::vec3 along = eta * (direction_ - cosine * normal);
         WalkExit exit;
         exit.position = hit.position;
         exit.normal = normal;
@@ -349,6 +421,9 @@ class Walk {
         exit.drift = length_ > 0 ? (hit.position - start_) / length_ : glm::vec3(0);
         exit.primitive = hit.primitive;
         exit.first_index = hit.first_index;
+        exit.material = hit.place == bodies_.top()
+                            ? space_.scene->primitives[hit.primitive].material
+                            : space_.material_at[bodies_.top()];
         exit.u = hit.u;
         exit.v = hit.v;
         exits_.push_back(exit);
@@ -369,6 +444,8 @@ class Walk {
     FreeBall free_;
     std::uint32_t scatterings_ = 0;
     bool is_reflected_ = false, has_changed_ = false;  // inside; medium
+    bool is_scattered_ = false;                        // or taken for it
+    bool is_straight_ = false;  // it went through another body before it scattered
     MediumStack bodies_;
 };
 

@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "bake/base/rng.h"
 #include "bake/effects/multiple/walks/band_weights.h"
+#include "bake/effects/multiple/walks/medium_stack.h"
 #include "bake/effects/multiple/walks/walk_counts.h"
 #include "bake/effects/multiple/walks/walk_space.h"
 
@@ -74,6 +76,8 @@ struct WalkStart {
     float depth = 0;  ///< [m] of `position` below the surface that the site lies on
     /// [m], at which the walk is seen, where that is a vertex.
     glm::vec3 vertex{std::numeric_limits<float>::quiet_NaN()};
+    /// Bodies around `position`, where WalkSpace::bodies is set; none: `shells` of its own.
+    std::optional<MediumStack> around{};
 };
 
 /// Light that a walk finds: radiance that arrives at `position` from outside along `direction`
@@ -90,6 +94,7 @@ struct WalkExit {
     glm::vec3 drift{0};
     std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle
     float u = 0, v = 0;                            ///< weights of its second and third corner
+    std::uint32_t material = 0;                    ///< of the body that it leaves
     bool is_once = false;                          ///< counts by WalkOrders::marks_once alone
 };
 
@@ -103,6 +108,9 @@ struct WalkOrders {
     bool marks_once = false;
     /// Light that leaves the body unscattered counts as bright as the rest: nothing else holds it.
     bool fills_crossed = false;
+    /// Light that is not scattered counts where it went through another body: `transmission` holds
+    /// what stays in its own.
+    bool crosses_others = false;
 };
 
 /// Follows one walk backwards from the eye (README.md, "The estimator"). The start's direction is
@@ -113,9 +121,9 @@ struct WalkOrders {
 /// all groups of bands together (band_weights.h). The walk passes through inner shells of its own
 /// medium, and into the space's other media and out again (README.md, "Media inside"); where it
 /// meets another material it ends, because such light has met a second surface. At every arrival at
-/// the boundary the transmitted part is an exit and the reflected part goes on. `exits` are
-/// appended. Returns the direction inside, away from the body, in which the walk is
-/// seen.
+/// the boundary of any of these bodies to the outside the transmitted part is an exit and the
+/// reflected part goes on. `exits` are appended. Returns the direction inside, away from the body,
+/// in which the walk is seen.
 glm::vec3 follow_walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,
                       const WalkOrders& orders, WalkRandom& random, std::vector<WalkExit>& exits,
                       WalkCounts& counts);

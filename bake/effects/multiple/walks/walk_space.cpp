@@ -67,7 +67,8 @@ void add_band(std::size_t band, std::span<const formats::Medium* const> distinct
     for (const formats::Medium* medium : distinct) {
         sigma_t.push_back(flight_extinction(*medium, band));
     }
-    if (std::ranges::all_of(sigma_t, [](float s) { return s == 0; })) {
+    // Clear bodies in each other have light that crosses them all.
+    if (sigma_t.size() == 1 && sigma_t.front() == 0) {
         return;
     }
     std::size_t group = 0;
@@ -100,7 +101,8 @@ void add_band(std::size_t band, std::span<const formats::Medium* const> distinct
 }  // namespace
 
 WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triangles,
-                          std::uint32_t material, bool grey, std::span<const std::uint32_t> inner) {
+                          std::uint32_t material, bool grey, std::span<const std::uint32_t> inner,
+                          bool meet) {
     std::vector<std::uint32_t> materials{material};
     materials.insert(materials.end(), inner.begin(), inner.end());
     std::vector<const formats::Medium*> given;
@@ -124,6 +126,22 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
         if (given[m]->variation && place != kNoWalkMedium && !space.bands.empty()) {
             space.media[place].field.emplace(scene, materials[m]);
         }
+    }
+    const BodiesAt bodies(scene, triangles);
+    space.place_of.assign(scene.materials.size(), 0);
+    for (const std::uint32_t m : bodies.order()) {
+        if (space.medium_at.empty() || space.medium_at.back() != space.medium_of[m]) {
+            space.medium_at.push_back(space.medium_of[m]);
+            space.material_at.push_back(m);
+        }
+        space.place_of[m] = static_cast<std::uint16_t>(space.medium_at.size() - 1);
+    }
+    std::vector<std::uint8_t> is_member;
+    for (const std::uint8_t medium : space.medium_of) {
+        is_member.push_back(medium != kNoWalkMedium ? 1 : 0);
+    }
+    if (meet || bodies.has_faces_on_faces(scene, is_member)) {
+        space.bodies.emplace(bodies);
     }
     // Three that are effectively isotropic (README.md, "The light at an exit"). Where media follow
     // one another, the length of a walk does not predict its direction.
@@ -156,6 +174,25 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     space.cell = kCell * diagonal;
     space.most_events = most_events(space.media, diagonal);
     return space;
+}
+
+MediumStack bodies_around(const WalkSpace& space, glm::vec3 point) {
+    std::vector<int> count;
+    space.bodies->count(point, count);
+    MediumStack around;
+    for (std::size_t i = 0; i < count.size(); ++i) {
+        const std::uint32_t material = space.bodies->order()[i];
+        for (int n = 0; n < count[i] && space.medium_of[material] != kNoWalkMedium; ++n) {
+            around.enter(space.place_of[material]);
+        }
+    }
+    return around;
+}
+
+MediumStack bodies_at_start(const WalkSpace& space, glm::vec3 point) {
+    const std::uint16_t own = space.place_of[space.material];
+    const MediumStack around = bodies_around(space, point);
+    return around.contains(own) ? around : MediumStack(own, 1);
 }
 
 int count_shells(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {

@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "bake/effects/multiple/walks/ball_bank.h"
+#include "bake/effects/multiple/walks/medium_stack.h"
 #include "bake/scene/medium_field.h"
+#include "bake/transport/bodies_at.h"
 #include "bake/transport/clearance_grid.h"
 #include "bake/transport/embree_scene.h"
 #include "formats/scene.h"
@@ -72,6 +74,13 @@ struct WalkSpace {
     /// Of each material of the scene, its medium's place in `media`; kNoWalkMedium: walks end
     /// there.
     std::vector<std::uint8_t> medium_of;
+    /// Of each material, its place in order_media, where those of one medium that follow one
+    /// another share a place; of each place, its medium and first material.
+    std::vector<std::uint16_t> place_of;
+    std::vector<std::uint8_t> medium_at;
+    std::vector<std::uint32_t> material_at;
+    /// Where bodies touch or overlap; else the bodies around a walk are those that it has entered.
+    std::optional<BodiesAt> bodies;
     ClearanceGrid clearance;
     float cell = 0;  ///< [m], of that grid
     /// Of each medium, balls that walks cross in one step; null or no entry: none.
@@ -82,12 +91,18 @@ struct WalkSpace {
     std::uint32_t most_events = 0;
 };
 
-/// `inner`: materials whose bodies may lie inside (MaterialFacts::inner); each has a medium.
-/// `grey`: the three bands coincide, in all these media. `scene` and `triangles` must outlive the
-/// result.
+/// `inner`: materials whose bodies may lie inside or meet it (MaterialFacts::inner); each has a
+/// medium. `grey`: the three bands coincide, in all these media. `meet`: surfaces of some of them
+/// do; that faces of one material lie on one another is found. `scene` and `triangles` must outlive
+/// the result.
 WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triangles,
                           std::uint32_t material, bool grey,
-                          std::span<const std::uint32_t> inner = {});
+                          std::span<const std::uint32_t> inner = {}, bool meet = false);
+
+/// The bodies of the space's media around a point. Precondition: WalkSpace::bodies.
+MediumStack bodies_around(const WalkSpace& space, glm::vec3 point);
+/// The same just below the surface of the space's material; that alone where edges hide it.
+MediumStack bodies_at_start(const WalkSpace& space, glm::vec3 point);
 
 /// Number of the medium's shells around a point, counted along lines to infinity: every surface of
 /// the medium that a line leaves through, less those that it enters through. 1 just inside a closed
