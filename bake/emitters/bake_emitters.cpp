@@ -11,8 +11,9 @@
 #include "bake/base/interrupted.h"
 #include "bake/emitters/cross_media.h"
 #include "bake/emitters/emitter_knobs.h"
-#include "bake/emitters/light_media.h"
-#include "bake/lamps/receiver_light.h"
+#include "bake/emitters/immersed_lamps.h"
+#include "bake/emitters/lamp_rows.h"
+#include "bake/emitters/lit_media.h"
 #include "bake/lamps/trace_particles.h"
 #include "bake/scene/lobe_record.h"
 
@@ -32,14 +33,75 @@ std::uint32_t caustic_particles(std::uint32_t particles) {
                     std::min(kMost, particles > kMost / kTimes ? kMost : kTimes * particles));
 }
 
+double sum_of_weights(std::span<const ElementDeposit> deposits) {
+    double sum = 0;
+    for (const ElementDeposit& deposit : deposits)
+        sum += deposit.weight;
+    return sum;
+}
+
 // Whether caustics get particles of their own.
 bool is_bright(const ParticleLight& light) {
-    double all = 0, caustic = 0;
-    for (const ElementDeposit& deposit : light.all)
-        all += deposit.weight;
-    for (const ElementDeposit& deposit : light.caustic)
-        caustic += deposit.weight;
-    return caustic > all / 256;
+    return sum_of_weights(light.caustic) > sum_of_weights(light.all) / 128;
+}
+
+void subtract(std::span<const ElementDeposit> part, std::span<ElementDeposit> all) {
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        all[i].power -= part[i].power;
+        all[i].weight -= part[i].weight;
+        all[i].weight_squares -= part[i].weight_squares;
+    }
+}
+
+/// What particles bring to surfaces before it is scattered.
+struct TracedLamps {
+    std::optional<ElementLayout> layout;  // of caustics, where there are any
+    std::vector<ElementLight> caustics;   // of each lamp, as receivers read them
+    std::vector<ArrivedParticles> arrived;
+};
+
+TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sources,
+                        const DensitySpace* volumes, const Context& context, std::uint64_t& rays) {
+    const std::uint32_t particles = whole(job.knobs, kEmitterParticles);
+    const std::uint32_t more = caustic_particles(particles);
+    const ElementLayout coarse(job.scene, finest_area(job.scene, particles));
+    const auto make_cells = [&](const ElementLayout& layout) {
+        const std::size_t count =
+            job.surfaces != nullptr ? job.surfaces->transfer.scatterers.size() : 0;
+        return count == 0 ? std::nullopt
+                          : std::optional<CellsOfElements>(std::in_place, job.scene,
+                                                           job.surfaces->tree, count, layout);
+    };
+    const std::optional<CellsOfElements> cells = make_cells(coarse);
+    std::optional<CellsOfElements> caustic_cells;
+    TracedLamps traced;
+    traced.caustics.resize(sources.size());
+    traced.arrived.resize(sources.size());
+    for (std::uint32_t e = 0; e < sources.size() && !context.cancelled(); ++e) {
+        ParticleRun run{particles, e, job.knobs.seed, 0, job.textures};
+        run.volumes = volumes;
+        run.ends_diffuse = true;
+        ParticleLight first =
+            trace_particles(job.scene, job.rays, sources[e], coarse, run, context, rays);
+        const bool has_caustic = has_light(first.caustic), has_more = is_bright(first);
+        subtract(first.caustic, first.all);
+        // Scattered light of a volume that glows comes to points as well.
+        if (cells && job.lamps[e].volume == formats::kNone) {
+            traced.arrived[e].straight = cells->sum(first.all);
+        }
+        if (!has_caustic) continue;
+        if (!traced.layout) {
+            traced.layout.emplace(job.scene, finest_area(job.scene, more));
+            caustic_cells = make_cells(*traced.layout);
+        }
+        run.particles = has_more ? more : particles;
+        const std::vector<ElementDeposit> caustic =
+            trace_particles(job.scene, job.rays, sources[e], *traced.layout, run, context, rays)
+                .caustic;
+        traced.caustics[e] = traced.layout->join(caustic, kCausticElements);
+        if (caustic_cells) traced.arrived[e].caustic = caustic_cells->sum(caustic);
+    }
+    return traced;
 }
 
 std::vector<std::unique_ptr<GlowLight>> make_glow_lights(const EmitterJob& job, unsigned threads) {
@@ -73,7 +135,6 @@ void append_own_light(const formats::Scene& scene, std::span<const Lamp> lamps,
 
 formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Context& context,
                                              StageLog& log) {
-    const std::uint32_t particles = whole(job.knobs, kEmitterParticles);
     std::vector<LampSources> sources;
     sources.reserve(job.lamps.size());
     for (const Lamp& lamp : job.lamps) {
@@ -82,49 +143,29 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     std::optional<DensitySpace> space;
     if (!job.scene.volumes.empty()) space = make_density_space(job.scene);
     const DensitySpace* const volumes = space ? &*space : nullptr;
-    const ElementLayout layout(job.scene, finest_area(job.scene, particles));
-    std::vector<ElementLight> elements(job.lamps.size()), caustics(job.lamps.size());
-    const std::uint32_t more = caustic_particles(particles);
-    std::optional<ElementLayout> caustic_layout;
-    run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
-        for (std::uint32_t e = 0; e < job.lamps.size() && !context.cancelled(); ++e) {
-            ParticleRun run{particles, e, job.knobs.seed, 0, job.textures};
-            run.volumes = volumes;
-            const ParticleLight traced =
-                trace_particles(job.scene, job.rays, sources[e], layout, run, context, rays);
-            if (has_light(traced.all)) elements[e] = layout.join(traced.all, kGatheredElements);
-            if (!has_light(traced.caustic)) continue;
-            if (!caustic_layout) caustic_layout.emplace(job.scene, finest_area(job.scene, more));
-            run.particles = is_bright(traced) ? more : particles;
-            run.only_caustic = true;
-            caustics[e] = caustic_layout->join(trace_particles(job.scene, job.rays, sources[e],
-                                                               *caustic_layout, run, context, rays)
-                                                   .caustic,
-                                               kCausticElements);
-        }
-        return true;
-    });
-    MediaLight exitance;
     const auto glow = make_glow_lights(job, context.threads);
-    const LampLight light{job.scene,
+    const TracedLamps traced = run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
+        return trace_lamps(job, sources, volumes, context, rays);
+    });
+    const LampLight lamps{job.scene,
                           job.rays,
                           sources,
-                          layout,
-                          elements,
                           whole(job.knobs, kEmitterRays),
                           job.knobs.seed,
-                          &exitance,
-                          job.textures,
-                          caustics,
-                          caustic_layout ? &*caustic_layout : nullptr,
+                          traced.caustics,
+                          traced.layout ? &*traced.layout : nullptr,
                           volumes,
-                          glow};
+                          glow,
+                          job.textures};
+    const LampBounces light = run_stage(log, "surfaces lit by emitters", [&](std::uint64_t& rays) {
+        return find_lamp_bounces(lamps, job.surfaces, traced.arrived, context, rays);
+    });
     BakedEmitters baked;
-    MediaRows of_media(job.primitives.size());
+    LampRowsOfMedia of_media(job.primitives.size());
     if (job.media.finished != nullptr) {
         of_media = run_stage(log, "media lit by emitters", [&](std::uint64_t& rays) {
-            MediaRows rows = light_media({job.media, job.receivers, job.primitives, particles},
-                                         light, elements, exitance, context, rays);
+            LampRowsOfMedia rows =
+                light_media(job.media, light, job.receivers, job.primitives, context, rays);
             for (std::uint32_t p = 0; p < rows.size() && !context.cancelled(); ++p) {
                 if (job.primitives[p].shading != formats::Shading::translucent) continue;
                 add_crossing_light(*job.media.finished, job.receivers[p], light, rows[p], context,

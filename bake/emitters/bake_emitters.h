@@ -5,7 +5,7 @@
 #include "bake/base/context.h"
 #include "bake/base/stage_log.h"
 #include "bake/emitters/emitter_error.h"
-#include "bake/emitters/light_media.h"
+#include "bake/emitters/lit_media.h"
 #include "bake/lamps/lamps.h"
 #include "bake/plan/knobs.h"
 #include "bake/receivers/receiver.h"
@@ -23,6 +23,7 @@ struct EmitterJob {
     std::span<const formats::PrimitiveRecord> primitives;  ///< of the file: their rows
     std::span<const Lamp> lamps;                           ///< at least one
     const Knobs& knobs;
+    const BounceLight* surfaces = nullptr;  ///< that send light on, with arrivals; null: none does
     LitMedia media{};  ///< none: rows of translucent primitives have no light of emitters
     const ScenePyramids* textures = nullptr;  ///< BakeInputs::textures
     formats::VolumesView
@@ -35,8 +36,8 @@ struct BakedEmitters {
     EmitterErrorReport error;
 };
 
-/// The emitters of a file, and how far they err on opaque surfaces; three stages in the log, or
-/// four where media are lit. The same bits for any number of threads. Errors: interrupted.
+/// The emitters of a file, and how far they err on opaque surfaces; four stages in the log, or
+/// five where media are lit. The same bits for any number of threads. Errors: interrupted.
 formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Context& context,
                                              StageLog& log);
 

@@ -1,19 +1,19 @@
 #include "bake/emitters/cross_media.h"
 
-#include "bake/emitters/light_media.h"
+#include "bake/emitters/lit_media.h"
 #include "bake/exchange/other_light.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
 
-void add_crossing_light(const FinishedMedia& media, const ReceiverSet& set, const LampLight& light,
-                        std::vector<std::vector<formats::Rgb>>& rows, const Context& context,
-                        std::uint64_t& rays) {
+void add_crossing_light(const FinishedMedia& media, const ReceiverSet& set,
+                        const LampBounces& light, std::vector<std::vector<formats::Rgb>>& rows,
+                        const Context& context, std::uint64_t& rays) {
     const OtherLight lamps{.lamps = &light, .environment = false};
-    const std::size_t count = light.sources.size();
+    const std::size_t count = light.lamps.sources.size();
     const std::uint32_t n = lamp_basis(count);
     const std::vector<std::vector<float>> crossing = light_through_medium(
-        media, {set.material, set.outside, set.inside, lamps, n, false}, context, rays);
+        media, {set.material, set.outside, set.inside, lamps, n}, context, rays);
     if (crossing.size() != set.size() || crossing.empty()) return;
     const std::size_t columns = formats::cubemap_texels(n);
     const std::size_t terms = crossing.front().size() / (3 * columns);

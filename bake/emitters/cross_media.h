@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/lamps/receiver_light.h"
+#include "bake/exchange/lamp_bounces.h"
 #include "bake/receivers/receiver.h"
 #include "bake/rows/medium_rows.h"
 #include "formats/opal/rgb.h"
@@ -15,8 +15,8 @@ namespace opaline::bake {
 /// rows of one of its primitives: [lamp][row], outgoing radiance [nit] as `T_k` holds it, or empty,
 /// which is dark. It is no part of the exitance of media: particles and rays that look for light
 /// cross media by themselves.
-void add_crossing_light(const FinishedMedia& media, const ReceiverSet& set, const LampLight& light,
-                        std::vector<std::vector<formats::Rgb>>& rows, const Context& context,
-                        std::uint64_t& rays);
+void add_crossing_light(const FinishedMedia& media, const ReceiverSet& set,
+                        const LampBounces& light, std::vector<std::vector<formats::Rgb>>& rows,
+                        const Context& context, std::uint64_t& rays);
 
 }  // namespace opaline::bake

@@ -122,22 +122,31 @@ struct BackwardPath {
     // What lamps bring to a vertex without diffuse bounces.
     glm::dvec3 from_lamps(const Receiver& at, bool is_first) {
         glm::dvec3 sum = straight(at, is_first);
-        if (check.known == nullptr || check.known->caustics.empty()) return sum;
+        if (check.known == nullptr || check.known->lamps.caustics.empty()) return sum;
         std::vector<glm::dvec3> caustic(check.sources.size(), glm::dvec3(0));
-        add_caustics(*check.known, at, caustic, rays);
+        add_caustics(check.known->lamps, at, caustic, rays);
         for (const glm::dvec3& of_lamp : caustic)
             sum += of_lamp;
         return sum;
     }
 
-    glm::dvec3 from_media(const Arrival& at) const {
-        glm::dvec3 sum(0);
-        if (check.known == nullptr || check.known->media == nullptr) return sum;
-        for (std::size_t lamp = 0; lamp < check.sources.size(); ++lamp) {
-            sum += media_exitance(check.scene, *check.known->media, lamp, at.side,
-                                  glm::vec3(at.weights));
-        }
-        return sum;
+    // What a medium sends out is known; the path goes on as its boundary mirrors it. False: it
+    // ends.
+    bool meet_medium(const Arrival& at, glm::dvec3& from, glm::dvec3& direction,
+                     const glm::dvec3& throughput, glm::dvec3& sum) {
+        if (check.known == nullptr || at.side.is_back) return false;
+        const glm::vec3 normal(at.normal), place(from + at.distance * direction);
+        const SeenSide side{true, false, normal, -glm::dot(glm::vec3(direction), normal)};
+        const MirroredRay ray = mirror(
+            check.scene,
+            {place, glm::vec3(direction), static_cast<float>(at.error), at.material, side}, 1, 0);
+        sum +=
+            static_cast<double>(share_of_radiosity(check.scene.materials[at.material], ray.share)) *
+            throughput * find_sent(*check.known, place, {at.material, false, normal});
+        if (!(draw()[0] < ray.share)) return false;
+        from = glm::dvec3(ray.origin);
+        direction = glm::dvec3(ray.direction);
+        return true;
     }
 
     // Spread by the cosine around the axis; at first half of them toward volumes that glow.
@@ -212,8 +221,11 @@ struct BackwardPath {
             if (throughput == glm::dvec3(0)) break;
             const auto at = fly(from, direction, throughput, sum);
             if (!at) break;
-            throughput *= straight_transmittance(check.scene, *at);
-            sum += throughput * from_media(*at);
+            if (check.scene.materials[at->material].medium) {
+                if (!meet_medium(*at, from, direction, throughput, sum)) break;
+                is_diffuse = false;
+                continue;
+            }
             const Next next = choose(*at, direction, static_cast<double>(x[2]), unused);
             if (next.weight == glm::dvec3(0)) break;
             throughput *= next.weight;
@@ -233,12 +245,6 @@ struct BackwardPath {
     Next choose(const Arrival& at, const glm::dvec3& direction, double roulette,
                 PathDifferential& unused) {
         unused.count = 0;
-        if (lets_through(check.scene, at)) {
-            const auto onward =
-                cross_boundary(check.scene, at, direction, first_three(draw()), {}, unused);
-            return onward ? Next{onward->weight, onward->direction, onward->crosses, false}
-                          : Next{};
-        }
         const BounceColor color = bounce_color(check.scene, at.side, glm::vec3(at.weights));
         const double reflect = largest_band(color.reflect);
         const double transmit = largest_band(color.transmit);

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "bake/exchange/lamp_bounces.h"
 #include "bake/lamps/lamp_sources.h"
-#include "bake/lamps/receiver_light.h"
 #include "bake/receivers/receiver.h"
 #include "bake/transport/density/density_space.h"
 #include "bake/transport/ray_scene.h"
@@ -23,8 +23,8 @@ struct EmitterCheck {
     std::span<const formats::PrimitiveRecord> primitives;
     std::span<const LampSources> sources;
     formats::EmittersView emitters;
-    /// Source of the exitance of media and of caustics, which are not estimated anew; null: none.
-    const LampLight* known = nullptr;
+    /// Source of what media send out and of caustics, which are not estimated anew; null: none.
+    const LampBounces* known = nullptr;
     const DensitySpace* volumes = nullptr;   ///< between surfaces; null: none
     std::span<const GlowingGrid> glow = {};  ///< of them, those that are lamps
 };
@@ -40,10 +40,11 @@ TrueSources collect_true_sources(std::span<const LampSources> lamps);
 
 /// Irradiance [lx] of a receiver from all lamps, by `paths` paths backward from it: a point of
 /// an emitter's surface and one of the lights at every vertex, and any number of bounces, diffuse
-/// or mirrored by metal; at media they end in the exitance given above, or go straight through. In
-/// volumes they are scattered and gather the volumes' own light; light of other lamps is dimmed.
-/// It shares surfaces' colours with what it checks, but no elements, particles or form factors.
-/// `sources`: those of check.sources. (seed, key): key the numbers. `rays` counts those traced.
+/// or mirrored by metal; at media they end in what is known of these, or go on as their boundary
+/// mirrors them. In volumes they are scattered and gather the volumes' own light; light of other
+/// lamps is dimmed. It shares surfaces' colours with what it checks, but no elements, particles or
+/// form factors. `sources`: those of check.sources. (seed, key): key the numbers. `rays` counts
+/// those traced.
 glm::dvec3 trace_irradiance(const EmitterCheck& check, const TrueSources& sources,
                             const Receiver& receiver, std::uint32_t paths, std::uint64_t seed,
                             std::uint64_t key, std::uint64_t& rays);

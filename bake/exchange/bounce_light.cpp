@@ -32,7 +32,7 @@ std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, Exc
     const std::span<const Scatterer> scatterers = points.scatterers;
     if (scatterers.empty()) return nullptr;
     const bool is_coloured =
-        bounces == Bounces::none || std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
+        bounces != Bounces::all || std::ranges::any_of(inputs.layouts, &RowLayout::coloured);
     ScattererLight own = light_scatterers(inputs, points, media, is_coloured ? 3 : 1, rays);
     auto light = std::make_shared<BounceLight>(
         BounceLight{.scene = inputs.bake.scene,
@@ -42,16 +42,23 @@ std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, Exc
                     .seed = inputs.knobs.seed,
                     .layouts = {inputs.layouts.begin(), inputs.layouts.end()},
                     .tree = BounceTree(scatterers, inputs.layouts.size(), own.row_size()),
+                    .transfer = {},
                     .of_site = make_bounce_grid(count_rays_of_site(count)),
                     .of_receiver = make_cut_grid(count),
                     .of_averaged = make_bounce_grid(kRaysOfAveraged),
                     .sites = {},
                     .site_rows = {}});
+    Transfer& transfer = light->transfer;
+    if (bounces != Bounces::none || own.crossing.count() > 0) {
+        transfer.arrivals = weigh_scatterers(inputs, scatterers, media, light->tree, own, rays);
+    }
+    transfer.answers = std::move(own.answers);
+    transfer.scatterers = std::move(points.scatterers);
     if (bounces == Bounces::all) {
-        light->report = add_bounces(inputs, scatterers, media, own, light->tree, rays);
+        light->report = add_bounces(transfer, own.emitted, own.bands, light->tree, inputs.context);
         light_sites(inputs, *light, rays);
     } else {
-        set_unbounced(inputs, scatterers, media, own, light->tree, rays);
+        light->tree.set_rows(own.emitted, inputs.context);
     }
     return light;
 }

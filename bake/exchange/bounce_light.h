@@ -11,6 +11,7 @@
 #include "bake/exchange/gather_sites.h"
 #include "bake/exchange/scatterer_light.h"
 #include "bake/exchange/series_end.h"
+#include "bake/exchange/solve_bounces.h"
 #include "bake/plan/effect.h"
 #include "bake/transport/coded_rows.h"
 
@@ -33,8 +34,9 @@ struct BounceLight {
     std::uint32_t cubemap_size = kBounceCubemap;  ///< of its rows
     std::uint32_t bands = 3;                      ///< or 1
     std::uint64_t seed = 0;
-    std::vector<RowLayout> layouts;                ///< by material
-    BounceTree tree;                               ///< rows: B, band by band
+    std::vector<RowLayout> layouts;  ///< by material
+    BounceTree tree;                 ///< rows: B, band by band
+    Transfer transfer;  ///< of its scatterers; without bounces there may be no arrivals
     BounceGrid of_site, of_receiver, of_averaged;  ///< rays; of a point whose light is averaged
     SolveReport report{};
     GatherSites sites;    ///< among receivers
@@ -47,11 +49,13 @@ struct BounceLight {
     }
 };
 
-enum class Bounces : std::uint8_t { none, all };
+/// What is solved for: the sky's light as scatterers send it on at once, with all that follows, or
+/// the former with all that other light needs to be followed (Transfer).
+enum class Bounces : std::uint8_t { none, all, of_lamps };
 
 /// Finds the light of scatterers; null where there are none. `media`: rows of
-/// ExchangePoints::media, in that order. Without bounces it is what they make of the sky's light,
-/// in three bands, and knows no sites. `rays` counts up.
+/// ExchangePoints::media, in that order. Without bounces of the sky it is what they make of its
+/// light, in three bands, and knows no sites. `rays` counts up.
 std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, ExchangePoints points,
                                                   std::span<const MediumRows> media,
                                                   std::uint64_t& rays,

@@ -86,8 +86,9 @@ BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materi
 }
 
 void BounceTree::set_sky() {
-    if (row_size_ == 0 || row_size_ % kSkyTexels != 0) return;
+    if (row_size_ == 0) return;
     rows_.resize(nodes_.size() + kSkyTexels);
+    if (row_size_ % kSkyTexels != 0) return;  // of lamps, to whose light the sky adds none
     const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
     sky_solid_angles_.assign(face.begin(), face.end());
     std::vector<float> row(row_size_);
@@ -103,7 +104,7 @@ void BounceTree::set_sky() {
 }
 
 std::uint32_t BounceTree::sky_node(glm::vec3 direction) const {
-    return rows_.count() == nodes_.size()
+    return sky_solid_angles_.empty()
                ? formats::kNone
                : static_cast<std::uint32_t>(nodes_.size()) +
                      formats::texel_index(kBounceCubemap, {direction.x, direction.y, direction.z});

@@ -47,7 +47,8 @@ inline float similarity(Brightness a, Brightness b) {
 
 /// kd-trees over scatterers, one for each material, side and nearest axis of the normal, so that
 /// the two sides of a thin part never mix. Every node has a row: the mean of its scatterers'.
-/// Where rows are cube maps, texels of the sky have nodes as well, which no search finds.
+/// Texels of the sky have nodes as well, which no search finds; they are dark where rows are no
+/// cube maps.
 class BounceTree {
   public:
     /// Nodes that a search sets aside: at most as many as a tree is deep.
@@ -81,6 +82,8 @@ class BounceTree {
     std::uint32_t scatterer_of(std::uint32_t node) const { return extents_[node].scatterer; }
     /// Nodes of one scatterer each, and where it is [m].
     std::vector<std::uint32_t> leaves() const;
+    /// Of nodes below size(): its first child follows it; the second one, 0 of a leaf.
+    std::uint32_t second_child(std::uint32_t node) const { return nodes_[node].right; }
     glm::vec3 centre(std::uint32_t node) const { return nodes_[node].centre; }
     /// All scatterers, such that neighbours in space are mostly neighbours in the list.
     std::vector<std::uint32_t> neighbours() const;

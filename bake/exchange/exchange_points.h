@@ -26,13 +26,13 @@ struct ExchangePoints {
     }
     /// Irradiance 1 on one patch of a medium at a time. The points must outlive it.
     PatchLight light_of(const MediumAnswer& medium) const {
-        PatchLight::Scatterers points{scatterers, *tree, medium.members, {}};
+        PatchLight light{scatterers, *tree, medium.members, {}, patch};
         for (std::size_t m = 0; m < medium.members.size(); ++m) {
             if (m == 0 || material_of(medium, m) != material_of(medium, m - 1)) {
-                points.materials.push_back(material_of(medium, m));
+                light.materials.push_back(material_of(medium, m));
             }
         }
-        return {std::move(points), patch};
+        return light;
     }
 };
 

@@ -33,6 +33,10 @@ void bound(MediumAnswer& answer, std::span<const float> enters) {
 
 }  // namespace
 
+BandColour in_bands(const BandColour& colour, std::uint32_t bands) {
+    return bands == 1 ? BandColour{formats::luminance({colour[0], colour[1], colour[2]})} : colour;
+}
+
 BandColour MediumAnswer::sum_of(std::uint32_t to) const {
     BandColour sum{};
     for (std::size_t from = 0; from < patches; ++from) {
@@ -115,8 +119,8 @@ void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers
 void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterers,
                 const CodedRows& irradiance, std::uint32_t bands, const Context& context,
                 CodedRows& radiosity) {
-    const std::size_t size = irradiance.size(), patches = answer.patches;
-    assert(size == bands * kPlane && radiosity.size() == size);
+    const std::size_t size = irradiance.size(), patches = answer.patches, plane = size / bands;
+    assert(size == bands * plane && radiosity.size() == size);
     std::vector<float> mean(patches * size);
     const auto row_of = [&](std::vector<float>& rows, std::size_t patch) {
         return std::span(rows).subspan(patch * size, size);
@@ -134,9 +138,9 @@ void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterer
                     const BandColour& share = answer.share[to * patches + from];
                     if (from == to) continue;
                     for (std::size_t b = 0; b < bands; ++b) {
-                        const float* const e = &mean[from * size + b * kPlane];
-                        float* const s = &sum[b * kPlane];
-                        for (std::size_t t = 0; t < kPlane; ++t) {
+                        const float* const e = &mean[from * size + b * plane];
+                        float* const s = &sum[b * plane];
+                        for (std::size_t t = 0; t < plane; ++t) {
                             s[t] += share[b] * e[t];
                         }
                     }
@@ -152,10 +156,9 @@ void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterer
                 const std::uint32_t i = answer.members[m], p = answer.patch[m];
                 std::vector<float> own = irradiance.row(i), to = radiosity.row(i);
                 const formats::Rgb c = scatterers[i].albedo.diffuse;
-                const BandColour colour =
-                    bands == 1 ? BandColour{formats::luminance(c)} : BandColour{c.r, c.g, c.b};
+                const BandColour colour = in_bands({c.r, c.g, c.b}, bands);
                 for (std::size_t k = 0; k < size; ++k) {
-                    const std::size_t b = k / kPlane;
+                    const std::size_t b = k / plane;
                     to[k] += colour[b] *
                              (answer.share[p * patches + p][b] * own[k] + others[p * size + k]);
                 }

@@ -15,6 +15,9 @@ namespace opaline::bake {
 /// By band; of one band the first.
 using BandColour = std::array<float, 3>;
 
+/// Three bands as they are, or their luminance.
+BandColour in_bands(const BandColour& colour, std::uint32_t bands);
+
 /// What scatters back out of a medium, or of several that meet or lie in each other: one operator
 /// for light of the sky and of other surfaces, so that no light is created between them. Light that
 /// enters a patch of the surface leaves every patch with a share of it. Shares of what arrives at
@@ -49,7 +52,7 @@ void set_shares(const LightInputs& inputs, std::span<const Scatterer> scatterers
 /// Adds what the medium makes of irradiance to rows of radiosity,
 ///     B_i += c_i (A_pp E_i + sum over other patches q of A_pq E_q),   p the patch of i,
 /// E_q the mean over the patch: within its own patch a point answers what arrives at it. Rows, of
-/// all scatterers: `bands` planes; others' stay as they are.
+/// all scatterers: `bands` planes of any columns; others' stay as they are.
 void add_answer(const MediumAnswer& answer, std::span<const Scatterer> scatterers,
                 const CodedRows& irradiance, std::uint32_t bands, const Context& context,
                 CodedRows& radiosity);

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <numbers>
 
+#include "bake/exchange/lamp_bounces.h"
 #include "bake/exchange/patch_light.h"
-#include "bake/lamps/receiver_light.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -19,13 +19,11 @@ void add_plane(std::span<const float> from, float factor, std::span<float> to) {
     }
 }
 
-std::uint64_t add_lamps(const LampLight& light, const LitPoint& point, std::uint32_t n,
+std::uint64_t add_lamps(const LampBounces& light, const LitPoint& point, std::uint32_t n,
                         std::span<float> rows) {
-    LampLight own = light;
-    if (point.is_averaged) own.samples = std::min(own.samples, kRaysOfAveraged);
     std::uint64_t rays = 0;
     const std::vector<glm::dvec3> irradiance =
-        receive_light(own, point.receiver, key_of(point.receiver), rays);
+        receive_light(light, point, key_of(point.receiver), rays);
     const std::size_t texels = formats::cubemap_texels(n);
     for (std::size_t e = 0; e < irradiance.size(); ++e) {
         for (int b = 0; b < 3; ++b) {
@@ -39,7 +37,10 @@ std::uint64_t add_lamps(const LampLight& light, const LitPoint& point, std::uint
 
 std::uint64_t add_irradiance(const OtherLight& light, const LitPoint& point,
                              std::uint32_t cubemap_size, std::span<float> rows) {
-    if (light.patches != nullptr) return add_patch(*light.patches, point.receiver, rows);
+    if (light.patches != nullptr) {
+        add_patch(*light.patches, point.receiver, rows);
+        return 0;
+    }
     if (light.lamps != nullptr) return add_lamps(*light.lamps, point, cubemap_size, rows);
     return add_bounced(*light.surfaces, point, cubemap_size, rows);
 }

@@ -16,15 +16,15 @@
 
 namespace opaline::bake {
 
-struct LampLight;   // lamps/receiver_light.h
-struct PatchLight;  // patch_light.h
+struct LampBounces;  // lamp_bounces.h
+struct PatchLight;   // patch_light.h
 
 /// Light that arrives at surfaces besides that of the distant environment, or instead of it: one
 /// of the three. Its directions are not kept: effects take it for diffuse.
 struct OtherLight {
     std::shared_ptr<const BounceLight> surfaces{};  ///< what these send
     const PatchLight* patches = nullptr;  ///< instead of the environment: a column for each patch
-    const LampLight* lamps = nullptr;     ///< instead of it: column e is lamp e
+    const LampBounces* lamps = nullptr;   ///< instead of it: column e is lamp e
     /// 3, or 1 where the three coincide. With 3, rows of all receivers have three bands as well
     /// (RowLayout::coloured).
     std::uint32_t bands = 3;

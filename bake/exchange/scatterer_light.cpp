@@ -17,10 +17,6 @@ namespace {
 constexpr std::uint32_t kCubemap = kBounceCubemap;
 constexpr std::size_t kRowTexels = 6 * kCubemap * kCubemap;
 
-BandColour to_bands(formats::Rgb c, std::uint32_t bands) {
-    return bands == 1 ? BandColour{formats::luminance(c), 0, 0} : BandColour{c.r, c.g, c.b};
-}
-
 std::vector<float> make_even_sky() {
     const std::vector<double> face = formats::texel_solid_angles(kCubemap);
     std::vector<float> light(kRowTexels);
@@ -73,15 +69,17 @@ std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions
         reflect = s.albedo.diffuse * sheet->reflect + s.albedo.mirrored;
         transmit = s.albedo.diffuse * sheet->transmit;
     }
-    field.light.reflect[i] = to_bands(reflect, field.light.bands);
-    field.light.transmit[i] = to_bands(transmit, field.light.bands);
+    field.light.answers.reflect[i] = {reflect.r, reflect.g, reflect.b};
+    field.light.answers.transmit[i] = {transmit.r, transmit.g, transmit.b};
     std::uint64_t rays = gather_row(field, directions, s.outside, row);
     s.openness = openness_of(row);
-    add_scaled(row, field.light.reflect[i], field.light.bands, emitted);
+    add_scaled(row, in_bands(field.light.answers.reflect[i], field.light.bands), field.light.bands,
+               emitted);
     if (field.material(i).sheet) {
         rays += gather_row(field, directions, s.beyond, row);
         field.light.open_beyond[i] = openness_of(row);
-        add_scaled(row, field.light.transmit[i], field.light.bands, emitted);
+        add_scaled(row, in_bands(field.light.answers.transmit[i], field.light.bands),
+                   field.light.bands, emitted);
     }
     field.light.emitted.set(i, emitted);
     return rays;
@@ -146,11 +144,11 @@ std::uint64_t light_medium(LitScatterers& field, const DirectionSet& directions,
 // B of media, from what they make of light on each patch; without what boundaries mirror
 // (bounce_rays.h).
 std::uint64_t light_media(LitScatterers& field, const DirectionSet& directions) {
-    if (field.light.answers.empty()) return 0;
+    if (field.light.answers.media.empty()) return 0;
     CodedRows irradiance(field.scatterers.size(), field.light.row_size());
     std::uint64_t rays = 0;
     for (std::size_t m = 0; m < field.media.size() && !field.inputs.context.cancelled(); ++m) {
-        MediumAnswer& answer = field.light.answers[m];
+        MediumAnswer& answer = field.light.answers.media[m];
         set_shares(field.inputs, field.scatterers, field.media[m].scattered, answer);
         rays += light_medium(field, directions, answer, field.media[m].crossing, irradiance);
         add_answer(answer, field.scatterers, irradiance, field.light.bands, field.inputs.context,
@@ -195,8 +193,10 @@ ScattererLight light_scatterers(const LightInputs& inputs, ExchangePoints& point
         inputs,
         points.scatterers,
         media,
-        {bands, CodedRows(count, bands * kRowTexels), std::vector<BandColour>(count),
-         std::vector<BandColour>(count), std::vector<float>(count), std::move(points.media),
+        {bands,
+         CodedRows(count, bands * kRowTexels),
+         {std::vector<BandColour>(count), std::vector<BandColour>(count), std::move(points.media)},
+         std::vector<float>(count),
          CodedRows(0, bands * kRowTexels)}};
     rays += light_all(field);
     return std::move(field.light);

@@ -10,13 +10,18 @@
 
 namespace opaline::bake {
 
+/// What scatterers make of light that arrives, wherever it is from.
+struct ScattererAnswers {
+    std::vector<BandColour> reflect, transmit;  ///< on its side and through it; 0 of media
+    std::vector<MediumAnswer> media;            ///< which reflect as these say
+};
+
 /// What scatterers make of the environment's light and of each other's.
 struct ScattererLight {
-    std::uint32_t bands = 3;                    ///< or 1
-    CodedRows emitted;                          ///< B without bounces, band by band, Haar
-    std::vector<BandColour> reflect, transmit;  ///< of bounced light, on its side and through it
-    std::vector<float> open_beyond;     ///< Scatterer::openness of the other side; of thin walls
-    std::vector<MediumAnswer> answers;  ///< of media, which reflect as these say
+    std::uint32_t bands = 3;  ///< or 1
+    CodedRows emitted;        ///< B without bounces, band by band, Haar
+    ScattererAnswers answers;
+    std::vector<float> open_beyond;  ///< Scatterer::openness of the other side; of thin walls
     /// B of light of the sky that crosses a medium straight, but for the base colour; of scatterers
     /// on media that let some cross, else 0. No part of `emitted`.
     CodedRows crossing;

@@ -14,7 +14,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kTexels = 6 * kBounceCubemap * kBounceCubemap;
+constexpr std::size_t kTexels = 6 * kBounceCubemap * kBounceCubemap;  // of the sky's rows
 constexpr std::uint32_t kMostBounces = 64;
 // A bounce of less of the light than this is the last one, where what follows it is less as well.
 constexpr double kLeastShare = 1e-3;
@@ -30,19 +30,13 @@ struct Field {
     }
 };
 
-// Plane by plane.
-void add_scaled(std::span<const float> from, const BandColour& factor, std::span<float> to) {
+// Plane by plane, of so many columns.
+void add_scaled(std::span<const float> from, const BandColour& factor, std::size_t columns,
+                std::span<float> to) {
     for (std::size_t k = 0; k < to.size(); ++k) {
-        to[k] += factor[k / kTexels] * from[k];
+        to[k] += factor[k / columns] * from[k];
     }
 }
-
-// What reaches a scatterer from others, on its side and, through a sheet, on the other one; and
-// what of others' radiosity crosses its medium to it, as the mean of the bands.
-struct Arrivals {
-    std::vector<NodeWeight> front, back, through;
-    BandColour of_through{};  // times `through`, by band
-};
 
 // Whether nothing of light in a body is absorbed, band by band.
 std::array<bool, 3> absorbs_nothing(const formats::Medium& medium) {
@@ -107,26 +101,57 @@ void weigh_through(const Field& field, const BounceTree& tree, const CrossingVie
             sum > 0 ? albedo[b] * share[b] * static_cast<float>(by_band[b] / sum) : 0;
         sky_share[b] = albedo[b] * share[b];
     }
-    if (field.light.bands == 1) {
-        const auto grey = [](const BandColour& c) {
-            return BandColour{formats::luminance({c[0], c[1], c[2]})};
-        };
-        arrivals.of_through = grey(arrivals.of_through);
-        sky_share = grey(sky_share);
-    }
     std::vector<float> to = field.light.emitted.row(i);
-    add_scaled(of_sky, sky_share, to);
+    add_scaled(of_sky, in_bands(sky_share, field.light.bands), kTexels, to);
     field.light.emitted.set(i, to);
 }
 
-std::vector<Arrivals> weigh_scatterers(const Field& field, std::span<const MediumRows> media,
-                                       const BounceTree& tree, std::uint64_t& rays) {
+// The bounces after a last one, by which rows changed.
+void add_rest(const SeriesEnd& series, const CodedRows& before, std::size_t columns,
+              const Context& context, CodedRows& rows) {
+    constexpr std::size_t kBlock = 64;
+    for_each_block_in_order(
+        rows.count(), kBlock, context,
+        [&](Range range) {
+            for (std::size_t i = range.begin; i < range.end; ++i) {
+                std::vector<float> to = rows.row(i);
+                const std::vector<float> from = before.row(i);
+                for (std::size_t k = 0; k < to.size(); ++k) {
+                    to[k] += static_cast<float>(series.rest(k / columns)) * (to[k] - from[k]);
+                }
+                rows.set(i, to);
+            }
+            return 0;
+        },
+        [](Range, int) {});
+}
+
+// Of all rows under an even sky, or all lamps, by band. What an even sky brings is in the average
+// of each face.
+std::vector<double> sums_of_even(const CodedRows& rows, std::size_t columns) {
+    const std::size_t step = columns == kTexels ? kTexels / 6 : 1;
+    std::vector<double> sums(rows.size() / columns);
+    for (std::size_t i = 0; i < rows.count(); ++i) {
+        for (std::size_t k = 0; k < rows.size(); k += step) {
+            sums[k / columns] += static_cast<double>(std::abs(rows.value(i, k)));
+        }
+    }
+    return sums;
+}
+
+}  // namespace
+
+std::vector<Arrivals> weigh_scatterers(const LightInputs& inputs,
+                                       std::span<const Scatterer> scatterers,
+                                       std::span<const MediumRows> media, const BounceTree& tree,
+                                       ScattererLight& light, std::uint64_t& rays) {
+    const Field field{inputs, scatterers, light};
     std::vector<Arrivals> arrivals(field.scatterers.size());
     const BounceGrid grid = make_bounce_grid(kRaysOfScatterer);
     std::vector<BandColour> scattered(arrivals.size());
     std::vector<const CrossingViews*> through(arrivals.size());
     for (std::size_t k = 0; k < media.size(); ++k) {
-        const MediumAnswer& answer = field.light.answers[k];
+        const MediumAnswer& answer = field.light.answers.media[k];
         for (std::size_t m = 0; m < media[k].through.size(); ++m) {
             scattered[answer.members[m]] = answer.sum_of(answer.patch[m]);
             through[answer.members[m]] = &media[k].through[m];
@@ -164,78 +189,51 @@ std::vector<Arrivals> weigh_scatterers(const Field& field, std::span<const Mediu
     return arrivals;
 }
 
-// The bounces after a last one, by which rows changed.
-void add_rest(const SeriesEnd& series, const CodedRows& before, const Context& context,
-              CodedRows& rows) {
-    constexpr std::size_t kBlock = 64;
-    for_each_block_in_order(
-        rows.count(), kBlock, context,
-        [&](Range range) {
-            for (std::size_t i = range.begin; i < range.end; ++i) {
-                std::vector<float> to = rows.row(i);
-                const std::vector<float> from = before.row(i);
-                for (std::size_t k = 0; k < to.size(); ++k) {
-                    to[k] += static_cast<float>(series.rest(k / kTexels)) * (to[k] - from[k]);
-                }
-                rows.set(i, to);
-            }
-            return 0;
-        },
-        [](Range, int) {});
-}
-
-// Of all rows under an even sky, by band.
-std::vector<double> sums_of_even(const CodedRows& rows) {
-    std::vector<double> sums(rows.size() / kTexels);
-    for (std::size_t i = 0; i < rows.count(); ++i) {
-        for (std::size_t k = 0; k < rows.size(); k += kTexels / 6) {
-            sums[k / kTexels] += static_cast<double>(std::abs(rows.value(i, k)));
+SolveReport add_bounces(const Transfer& transfer, const CodedRows& emitted, std::uint32_t bands,
+                        BounceTree& tree, const Context& context) {
+    const std::size_t size = emitted.size(), columns = size / bands;
+    const ScattererAnswers& answers = transfer.answers;
+    const std::vector<Arrivals>& arrivals = transfer.arrivals;
+    CodedRows leaving = emitted;
+    CodedRows arriving = answers.media.empty() ? CodedRows() : leaving;  // of media
+    std::vector<std::uint8_t> is_medium(arrivals.size());
+    for (const MediumAnswer& answer : answers.media) {
+        for (const std::uint32_t i : answer.members) {
+            is_medium[i] = 1;
         }
     }
-    return sums;
-}
-
-// B = B_0 + rho gather(B), bounce by bounce: the tree's rows become all light that leaves. The last
-// bounce stands for those that would follow it as well.
-SolveReport iterate(const Field& field, std::span<const Arrivals> arrivals, BounceTree& tree) {
-    const std::size_t size = field.light.row_size();
-    CodedRows leaving = field.light.emitted;
-    CodedRows arriving = field.light.answers.empty() ? CodedRows() : leaving;  // of media
-    const auto is_medium = [&](std::size_t i) {
-        return field.inputs.layouts[field.scatterers[i].material].translucent;
-    };
     // What neighbours see is mostly the same and still in the cache.
     const std::vector<std::uint32_t> order = tree.neighbours();
     SeriesEnd series;
-    series.add(sums_of_even(leaving));
+    series.add(sums_of_even(leaving, columns));
     SolveReport report;
-    for (bool is_last = false; !is_last && !field.inputs.context.cancelled(); ++report.bounces) {
+    for (bool is_last = false; !is_last && !context.cancelled(); ++report.bounces) {
         report.remaining = series.remaining();
         is_last = series.is_settled(kLeastShare) || report.bounces + 1 == kMostBounces;
         const CodedRows before = is_last ? leaving : CodedRows();
-        tree.set_rows(leaving, field.inputs.context);
+        tree.set_rows(leaving, context);
         constexpr std::size_t kBlock = 64;
         for_each_block_in_order(
-            arrivals.size(), kBlock, field.inputs.context,
+            arrivals.size(), kBlock, context,
             [&](Range range) {
                 std::vector<float> row(size);
                 for (const std::uint32_t i :
                      std::span(order).subspan(range.begin, range.end - range.begin)) {
-                    std::vector<float> to = field.light.emitted.row(i);
+                    std::vector<float> to = emitted.row(i);
                     const auto add = [&](std::span<const NodeWeight> from,
                                          const BandColour& share) {
                         if (from.empty()) return;
                         std::ranges::fill(row, 0.0f);
                         add_node_rows(tree, from, row);
-                        add_scaled(row, share, to);
+                        add_scaled(row, in_bands(share, bands), columns, to);
                     };
-                    if (is_medium(i)) {
+                    if (is_medium[i] != 0) {
                         std::ranges::fill(row, 0.0f);
                         add_node_rows(tree, arrivals[i].front, row);
                         arriving.set(i, row);
                     } else {
-                        add(arrivals[i].front, field.light.reflect[i]);
-                        add(arrivals[i].back, field.light.transmit[i]);
+                        add(arrivals[i].front, answers.reflect[i]);
+                        add(arrivals[i].back, answers.transmit[i]);
                     }
                     add(arrivals[i].through, arrivals[i].of_through);
                     leaving.set(i, to);
@@ -243,35 +241,16 @@ SolveReport iterate(const Field& field, std::span<const Arrivals> arrivals, Boun
                 return 0;
             },
             [](Range, int) {});
-        for (const MediumAnswer& answer : field.light.answers) {
-            add_answer(answer, field.scatterers, arriving, field.light.bands, field.inputs.context,
-                       leaving);
+        for (const MediumAnswer& answer : answers.media) {
+            add_answer(answer, transfer.scatterers, arriving, bands, context, leaving);
         }
         if (is_last) {
-            add_rest(series, before, field.inputs.context, leaving);
+            add_rest(series, before, columns, context, leaving);
         }
-        series.add(sums_of_even(leaving));
+        series.add(sums_of_even(leaving, columns));
     }
-    tree.set_rows(leaving, field.inputs.context);
+    tree.set_rows(leaving, context);
     return report;
-}
-
-}  // namespace
-
-SolveReport add_bounces(const LightInputs& inputs, std::span<const Scatterer> scatterers,
-                        std::span<const MediumRows> media, ScattererLight& light, BounceTree& tree,
-                        std::uint64_t& rays) {
-    const Field field{inputs, scatterers, light};
-    return iterate(field, weigh_scatterers(field, media, tree, rays), tree);
-}
-
-void set_unbounced(const LightInputs& inputs, std::span<const Scatterer> scatterers,
-                   std::span<const MediumRows> media, ScattererLight& light, BounceTree& tree,
-                   std::uint64_t& rays) {
-    if (light.crossing.count() > 0) {  // weighing adds it to `emitted`
-        weigh_scatterers({inputs, scatterers, light}, media, tree, rays);
-    }
-    tree.set_rows(light.emitted, inputs.context);
 }
 
 }  // namespace opaline::bake

@@ -23,7 +23,7 @@ struct BounceColor {
 };
 
 /// At a point of a triangle, `weights` barycentric. What is mirrored does not count (onward_ray.h).
-/// Black for media, whose light is in media_light.h, and for backs of single-sided surfaces.
+/// Black for media, which are more than their surface, and for backs of single-sided surfaces.
 /// `view`: footprint of texture look-ups; null: at the point.
 BounceColor bounce_color(const formats::Scene& scene, const TriangleSide& side,
                          const glm::vec3& weights, const TextureView* view = nullptr);
@@ -88,7 +88,7 @@ bool lets_through(const formats::Scene& scene, const Arrival& at);
 
 /// Refraction into a medium, the share that enters; or out of it: refracted, or mirrored by chance.
 /// What does not scatter has the roughness of its medium, as in the reference. x: three random
-/// numbers. What a medium's outside mirrors is left out: media_light.h has it. Precondition:
+/// numbers. What a medium's outside mirrors is left out: it goes on as if diffuse. Precondition:
 /// lets_through.
 std::optional<OnwardRay> cross_boundary(const formats::Scene& scene, const Arrival& at,
                                         const glm::dvec3& direction, std::array<double, 3> x,

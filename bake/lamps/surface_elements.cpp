@@ -1,6 +1,7 @@
 #include "bake/lamps/surface_elements.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace opaline::bake {
@@ -38,6 +39,21 @@ std::uint32_t element_index(glm::dvec3 weights, std::uint32_t level) {
         index = 4 * index + child;
     }
     return index;
+}
+
+// Barycentric weights of the middle of a triangle of element_index.
+glm::dvec3 element_middle(std::uint32_t index, std::uint32_t level) {
+    glm::dvec3 middle(1.0 / 3);
+    for (; level > 0; --level, index /= 4) {
+        const std::uint32_t child = index % 4;
+        middle *= 0.5;
+        if (child == 3) {
+            middle = glm::dvec3(0.5) - middle;
+        } else {
+            middle[static_cast<int>(child)] += 0.5;
+        }
+    }
+    return middle;
 }
 
 }  // namespace
@@ -85,6 +101,33 @@ std::size_t ElementLayout::element(const TriangleSide& side, const glm::dvec3& w
     const Hierarchy* const hierarchy = find(side);
     if (hierarchy == nullptr) return size_;
     return hierarchy->first + element_index(weights, hierarchy->levels);
+}
+
+std::vector<ElementPlace> ElementLayout::places(const formats::Scene& scene) const {
+    std::vector<ElementPlace> places(size_);
+    for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
+        const formats::Primitive& primitive = scene.primitives[p];
+        for (std::uint32_t i = 0; i + 2 < primitive.index.size(); i += 3) {
+            std::array<glm::dvec3, 3> corner;
+            for (std::size_t c = 0; c < 3; ++c) {
+                corner[c] = glm::dvec3(primitive.position[primitive.index[i + c]]);
+            }
+            const glm::dvec3 up = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+            const glm::dvec3 normal = up == glm::dvec3(0) ? up : glm::normalize(up);
+            for (std::uint32_t side = 0; side < sides_[p]; ++side) {
+                const Hierarchy& own = hierarchies_[first_[p] + i / 3 * sides_[p] + side];
+                for (std::uint32_t e = 0; e < 1u << (2 * own.levels); ++e) {
+                    const glm::dvec3 w = element_middle(e, own.levels);
+                    places[own.first + e] = {
+                        glm::vec3(w.x * corner[0] + w.y * corner[1] + w.z * corner[2]),
+                        glm::vec3((side == 0 ? 1.0 : -1.0) * normal), primitive.material, side != 0,
+                        static_cast<float>(
+                            std::ldexp(own.area, -2 * static_cast<int>(own.levels)))};
+                }
+            }
+        }
+    }
+    return places;
 }
 
 }  // namespace opaline::bake

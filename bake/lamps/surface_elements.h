@@ -28,6 +28,14 @@ struct ElementDeposit {
 /// Whether any element took light.
 bool has_light(std::span<const ElementDeposit> deposits);
 
+/// Where an element is.
+struct ElementPlace {
+    glm::vec3 position{0}, normal{0};  ///< [m], its middle; unit, of the side
+    std::uint32_t material = 0;
+    bool is_back = false;
+    float area = 0;  ///< [m^2]
+};
+
 /// Light of all elements.
 struct ElementLight {
     std::vector<glm::vec3> irradiance;    ///< [lx]
@@ -55,6 +63,9 @@ class ElementLayout {
 
     /// The element around a point, or size() where the side has none. `weights`: barycentric.
     std::size_t element(const TriangleSide& side, const glm::dvec3& weights) const;
+
+    /// By element. `scene`: the one that they are of.
+    std::vector<ElementPlace> places(const formats::Scene& scene) const;
 
     /// Joins elements as far as footprints reach, and spreads the power of each group over its
     /// area. Siblings join if all are whole and their parent is not larger than s times the

@@ -129,7 +129,7 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
                 : surface_footprint(p.path, tracer.rules, at->normal, FootprintMode::polygon).area;
         const std::size_t element = tracer.layout.element(at->side, at->weights);
         const bool is_caustic = is_from_lamp && flight > 0;
-        if (element < tracer.layout.size() && (is_caustic || !tracer.run.only_caustic)) {
+        if (element < tracer.layout.size()) {
             out.deposits.push_back(
                 {element, p.power, std::max(footprint, kLeastFootprint), is_caustic});
         }
@@ -144,7 +144,7 @@ void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
         p.direction = next.direction;
         p.power = next.power;
         is_from_lamp = is_from_lamp && !next.is_diffuse;
-        if (tracer.run.only_caustic && !is_from_lamp) return;
+        if (tracer.run.ends_diffuse && !is_from_lamp) return;
     }
 }
 
@@ -163,7 +163,7 @@ ParticleLight trace_particles(const formats::Scene& scene, const RayScene& rays_
                               const LampSources& lamp, const ElementLayout& layout,
                               const ParticleRun& run, const Context& context, std::uint64_t& rays) {
     ParticleLight light;
-    if (!run.only_caustic) light.all.resize(layout.size());
+    light.all.resize(layout.size());
     const StartTable starts = make_start_table(lamp);
     if (starts.empty() || rays_scene.is_empty()) return light;
     const Tracer tracer{scene,
@@ -178,7 +178,7 @@ ParticleLight trace_particles(const formats::Scene& scene, const RayScene& rays_
         run.particles, kBlock, context,
         [&](Range range) {
             Traced traced;
-            if (!run.only_caustic) traced.deposits.reserve(2 * (range.end - range.begin));
+            traced.deposits.reserve(2 * (range.end - range.begin));
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 trace_particle(tracer, i, traced);
             }
@@ -186,7 +186,7 @@ ParticleLight trace_particles(const formats::Scene& scene, const RayScene& rays_
         },
         [&](Range, Traced&& traced) {
             for (const Deposit& deposit : traced.deposits) {
-                if (!run.only_caustic) add_deposit(deposit, light.all);
+                add_deposit(deposit, light.all);
                 if (!deposit.is_caustic) continue;
                 light.caustic.resize(layout.size());
                 add_deposit(deposit, light.caustic);

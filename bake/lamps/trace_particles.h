@@ -20,14 +20,14 @@ struct ParticleRun {
     double fixed_area = 0;
     /// Colours of surfaces are means over the footprint; null: of points.
     const ScenePyramids* textures = nullptr;
-    bool only_caustic = false;              ///< particles end where they scatter diffusely
+    bool ends_diffuse = false;              ///< particles end where they scatter diffusely
     double gradient_limit = 0.7;            ///< of footprints; infinite, for comparisons: none
     const DensitySpace* volumes = nullptr;  ///< that dim particles; null: none
 };
 
 /// What a lamp's particles brought to elements.
 struct ParticleLight {
-    std::vector<ElementDeposit> all;  ///< empty if only the caustic was asked for
+    std::vector<ElementDeposit> all;
     /// What metals and media alone passed on from the lamp: a part of `all`. Empty: nothing.
     std::vector<ElementDeposit> caustic;
 };

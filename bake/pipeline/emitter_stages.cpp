@@ -12,8 +12,8 @@
 #include "bake/accuracy/error_warnings.h"
 #include "bake/emitters/bake_emitters.h"
 #include "bake/emitters/emitter_knobs.h"
-#include "bake/emitters/light_media.h"
-#include "bake/emitters/media_patches.h"
+#include "bake/emitters/lit_media.h"
+#include "bake/pipeline/shared_light.h"
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/stage_work.h"
 #include "bake/rows/medium_rows.h"
@@ -24,12 +24,11 @@
 namespace opaline::bake {
 namespace {
 
-// Flights of a particle, mostly: surfaces in a room take it after three or four.
-constexpr double kFlights = 4;
+// Flights of a particle, mostly: it ends where it meets a surface that is no metal and lets nothing
+// through.
+constexpr double kFlights = 1.5;
 // Rays that meet surfaces everywhere, over rays beside each other.
 constexpr double kIncoherent = 4;
-// Passes between media and surfaces until the next adds little, mostly.
-constexpr double kPasses = 6;
 
 // Steps of a ray to volumes that glow, in times of steps of a depth: half across, and each with the
 // light of eight nodes.
@@ -96,53 +95,80 @@ formats::Status check_media(const BakeInputs& bake, std::span<const Lamp> lamps,
     return formats::ok_status();
 }
 
-// What media make of the light of some lamps, and of the particles of a pass between them; nothing
-// where there are none.
-std::optional<Work> work_of_media(const CostedBake& bake, std::size_t lamps, double particles) {
+// What media make of the light of some lamps; nothing where there are none.
+std::optional<Work> work_of_media(const CostedBake& bake, std::size_t lamps) {
     const CostRequest& request = bake.request;
     std::optional<Work> all;
-    bool has_passes = false;
     for (const CostedSubject& subject : bake.subjects) {
         CostedSubject lit = subject;
         lit.layout = lit_layout(subject.layout);
         const double receivers = request.facts.material[subject.material].receivers;
-        Knobs fine = request.knobs;
-        fine.cubemap_size = lamp_basis(lamps);
+        Knobs knobs = request.knobs;
+        knobs.cubemap_size = lamp_basis(lamps);
         if (lets_light_cross(request.effects, subject.decisions, subject.layout)) {
             if (!all) all.emplace();
-            *all += work_of_points(bake, lit, fine, receivers, [&](std::size_t e) {
+            *all += work_of_points(bake, lit, knobs, receivers, [&](std::size_t e) {
                 return request.effects.effects[e].look_through != nullptr;
             });
         }
         if (!takes_other_light(request.effects, subject.decisions, subject.layout)) continue;
         if (!all) all.emplace();
-        if (!has_passes) *all += Work{0, kPasses * static_cast<double>(lamps) * particles};
-        has_passes = true;
-        const auto counts = [&](std::size_t e) {
+        *all += work_of_points(bake, lit, knobs, receivers, [&](std::size_t e) {
             return request.effects.effects[e].adds_other_light;
-        };
-        *all += work_of_points(bake, lit, coarse_knobs(request.effects, request.knobs, kPatchBasis),
-                               std::min(receivers, kPatchPoints), counts);
-        *all += work_of_points(bake, lit, fine, receivers, counts);
+        });
     }
     return all;
+}
+
+// Points of surfaces that lamps light. Where no effect follows the sky's light between them, the
+// stage that finds them is billed, too.
+double bill_points(const CostedBake& bake, PlanEntry* payer, Bill& bill) {
+    const CostRequest& request = bake.request;
+    const auto& effects = request.effects.effects;
+    double points = 0;
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+        if (effects[e].light_work == nullptr) continue;
+        const LightWork light = effects[e].light_work(bake.input);
+        points = light.points;
+        if (std::ranges::any_of(bake.subjects, [e](const CostedSubject& subject) -> bool {
+                return subject.acts[e];
+            })) {
+            continue;
+        }
+        bill.open("surfaces that emitters light");
+        bill.add(light.work, payer);
+        const Knobs coarse = coarse_knobs(request.effects, request.knobs, light.cubemap_size);
+        for (const CostedSubject& subject : bake.subjects) {
+            if (subject.layout.translucent) {
+                bill.add(work_of_points(bake, subject, coarse,
+                                        points / static_cast<double>(bake.subjects.size()),
+                                        [](std::size_t) { return true; }),
+                         payer);
+            }
+        }
+    }
+    return points;
 }
 
 }  // namespace
 
 formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamps,
-                              const Context& context, std::vector<SubjectState>& subjects,
-                              BakeResult& result) {
+                              std::shared_ptr<const BounceLight> surfaces, const Context& context,
+                              std::vector<SubjectState>& subjects, BakeResult& result) {
     const std::vector<RowLayout> layouts = layouts_of(bake.scene, subjects);
     const FinishedMedia finished{bake, result.plan, result.knobs, subjects};
     LitMedia media;
     if (std::ranges::any_of(layouts, &RowLayout::translucent)) {
-        media = {&finished, layouts, result.asset.base_color};
+        media = {&finished, layouts};
     }
-    auto baked =
-        bake_emitters({bake.scene, bake.rays, bake.receivers, result.asset.primitives, lamps,
-                       result.knobs, media, bake.textures, result.asset.volumes.view()},
-                      context, result.stages);
+    if (!surfaces) {
+        surfaces = find_light_for_lamps(
+            {bake, result.knobs, context, layouts, subjects, {}, result.stages});
+    }
+    auto baked = bake_emitters(
+        {bake.scene, bake.rays, bake.receivers, result.asset.primitives, lamps, result.knobs,
+         surfaces.get(), media, bake.textures, result.asset.volumes.view()},
+        context, result.stages);
     if (!baked) return std::move(baked).error();
     result.asset.emitters = std::move(baked->emitters);
     result.error.add_part(std::string(kEmitters), baked->error.receivers_checked,
@@ -180,8 +206,11 @@ void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
     const double ray = kIncoherent * kCoherentRay.at(request.facts.triangles);
     const double rays = request.knobs[kEmitterRays] * request.facts.receivers;
     const double particles = kFlights * request.knobs[kEmitterParticles] * ray;
+    const double points = bill_points(bake, lamps.front(), bill);
     for_each("particles of emitters", {0, particles});
-    const std::optional<Work> media = work_of_media(bake, lamps.size(), particles);
+    for_each("surfaces lit by emitters",
+             {0, points * std::min<double>(kRaysOfScatterer, request.knobs[kEmitterRays]) * ray});
+    const std::optional<Work> media = work_of_media(bake, lamps.size());
     if (media) {
         const auto share = 1 / static_cast<double>(lamps.size());
         for_each("media lit by emitters", {share * media->alone, share * media->shared});

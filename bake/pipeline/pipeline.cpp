@@ -100,9 +100,10 @@ SurfaceLight find_light_of_surfaces(const BakeInputs& unlit, const Knobs& knobs,
 }
 
 // What an inspected scene becomes: all stages from the receivers on. `subjects`: left studied.
+// `light`: becomes what surfaces send.
 formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
                                const BakeExtras& extras, std::vector<SubjectState>& subjects,
-                               BakeResult& result) {
+                               SurfaceLight& light, BakeResult& result) {
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
     std::vector<TestLight> lights;  // none where there is nothing to relight
@@ -122,8 +123,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     knobs = with_model_error(unlit.effects, knobs, find_model_error(result.plan));
     run_step(Step::study, unlit, knobs, context, subjects, log);  // of effects that act only now
     const std::vector<VolumeLayout> planned = plan_volumes(unlit.scene, knobs).layouts;
-    const SurfaceLight light =
-        find_light_of_surfaces(unlit, knobs, planned, context, subjects, log);
+    light = find_light_of_surfaces(unlit, knobs, planned, context, subjects, log);
     BakeInputs bake = unlit;
     bake.light = light.shared ? &*light.shared : nullptr;
     const VolumeStages stages{bake.effects, bake.scene, bake.rays, light.seen()};
@@ -268,7 +268,8 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         bake.textures = &*textures;
     }
     std::vector<SubjectState> subjects;
-    if (auto status = bake_inspected(bake, context, extras, subjects, result); !status) {
+    SurfaceLight light;
+    if (auto status = bake_inspected(bake, context, extras, subjects, light, result); !status) {
         return std::move(status).error();
     }
     if (!plan.layers.empty()) {
@@ -277,7 +278,10 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         }
     }
     if (!plan.lamps.empty()) {
-        if (auto status = add_lamp_rows(bake, plan.lamps, context, subjects, result); !status) {
+        if (auto status =
+                add_lamp_rows(bake, plan.lamps, light.shared ? light.shared->surfaces : nullptr,
+                              context, subjects, result);
+            !status) {
             return std::move(status).error();
         }
     }

@@ -62,6 +62,23 @@ std::shared_ptr<const BounceLight> find_surface_light(const LightRequest& reques
                      });
 }
 
+std::shared_ptr<const BounceLight> find_light_for_lamps(const LightRequest& request) {
+    // Lamps light surfaces whose light of the sky is left out, too.
+    std::vector<RowLayout> layouts(request.layouts.begin(), request.layouts.end());
+    for (RowLayout& layout : layouts) {
+        layout.constant = layout.constant || !layout.translucent;
+    }
+    LightInputs inputs = inputs_for(request);
+    inputs.layouts = layouts;
+    for (const EffectDescriptor& effect : request.bake.effects.effects) {
+        if (effect.exchange_rays == nullptr) continue;
+        inputs.rays_of_receiver = effect.exchange_rays(request.knobs);
+    }
+    return run_stage(request.log, "surfaces that emitters light", [&](std::uint64_t& rays) {
+        return solve(request, inputs, Bounces::of_lamps, rays);
+    });
+}
+
 std::optional<formats::Diagnostic> describe_unsettled(const OtherLight& light) {
     constexpr double kMost = 0.01;
     const SolveReport& report = light.surfaces->report;

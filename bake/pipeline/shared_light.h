@@ -29,6 +29,10 @@ std::optional<OtherLight> find_shared_light(const LightRequest& request);
 /// sees one.
 std::shared_ptr<const BounceLight> find_surface_light(const LightRequest& request);
 
+/// What light of lamps goes between surfaces by, where that of the sky is not followed; null where
+/// nobody sees one.
+std::shared_ptr<const BounceLight> find_light_for_lamps(const LightRequest& request);
+
 /// A warning where bounces still were a hundredth of the light when the solve ended, as in closed
 /// rooms that hardly absorb: what follows is extrapolated.
 std::optional<formats::Diagnostic> describe_unsettled(const OtherLight& light);

@@ -9,15 +9,6 @@
 namespace opaline::bake {
 namespace {
 
-// coarse_knobs, but for what the user gave.
-Knobs coarse_of(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size) {
-    Knobs coarse = coarse_knobs(effects, knobs, cubemap_size);
-    for (const KnobSpec* knob : knobs.given) {
-        coarse.set(*knob, knobs[*knob]);
-    }
-    return coarse;
-}
-
 // Rows of points while only those effects of a subject act that `counts` holds for.
 template <class Counts>
 std::vector<std::vector<float>> rows_of_some(const BakeInputs& bake, const Knobs& knobs,
@@ -141,8 +132,7 @@ std::vector<std::vector<float>> light_medium(const FinishedMedia& media,
     }
     BakeInputs lit = media.bake;
     lit.light = &request.light;
-    Knobs knobs =
-        request.is_coarse ? coarse_of(effects, media.knobs, request.cubemap_size) : media.knobs;
+    Knobs knobs = media.knobs;
     knobs.cubemap_size = request.cubemap_size;
     std::vector<SubjectState> alone;
     alone.push_back(std::move(*own));

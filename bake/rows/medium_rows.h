@@ -43,7 +43,6 @@ struct MediumRequest {
     std::span<const BodyPoint> inside;
     const OtherLight& light;         ///< without the environment
     std::uint32_t cubemap_size = 1;  ///< of its basis
-    bool is_coarse = false;          ///< a step toward the result: cheaper
 };
 
 /// Rows of the points of a request by the effects of the plan: terms * 3 * 6 n n coefficients each.

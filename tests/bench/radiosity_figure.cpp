@@ -1,7 +1,6 @@
 // Figure 4 of [Suykens2001] remade: a room with a table, a diffuse ball and one of rough glass, lit
-// by a lamp below the ceiling and a spot, by particles alone. Three panels: elements as footprints
-// join them, with their edges; elements that are gathered; what receivers gather.
-// usage: opaline_bench radiosity-figure OUT.png [PARTICLES]
+// by a lamp below the ceiling and a spot, by particles alone: elements as footprints join them,
+// with their edges. usage: opaline_bench radiosity-figure OUT.png [PARTICLES]
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -14,7 +13,6 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/lamps/onward_ray.h"
-#include "bake/lamps/receiver_light.h"
 #include "bake/lamps/trace_particles.h"
 #include "formats/image/png.h"
 #include "formats/image/srgb.h"
@@ -25,7 +23,6 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::uint32_t kWidth = 480, kHeight = 400, kSamples = 3;  // samples along a pixel's side
-constexpr std::uint32_t kGatherRays = 256;
 constexpr double kExposure = 1.1;
 
 formats::Primitive box(glm::vec3 centre, glm::vec3 half) {
@@ -147,37 +144,13 @@ glm::dvec3 shade_elements(const View& view, const ElementLight& light, std::uint
     return sum / static_cast<double>(kSamples * kSamples);
 }
 
-glm::dvec3 shade_gathered(const View& view, const LampLight& light, std::uint32_t x,
-                          std::uint32_t y) {
-    const auto at = view.look(x + 0.5, y + 0.5);
-    if (!at) return glm::dvec3(0);
-    const formats::Material& material = view.scene.materials[at->material];
-    const glm::dvec3 own(material.emission.r, material.emission.g, material.emission.b);
-    const glm::dvec3 color = bounce_color(view.scene, at->side, glm::vec3(at->weights)).reflect;
-    if (color == glm::dvec3(0)) return own;
-    const glm::dvec3 point =
-        leave_surface(view.camera.eye, view.camera.direction(x + 0.5, y + 0.5), *at, false);
-    std::uint64_t rays = 0;
-    return own + std::numbers::inv_pi * color *
-                     receive_light(light, {glm::vec3(point), glm::vec3(at->normal)},
-                                   std::uint64_t{y} * kWidth + x, rays)[0];
-}
-
-void write(const std::vector<Picture>& panels, const std::string& path) {
-    constexpr std::uint32_t kGap = 6;
-    const auto count = static_cast<std::uint32_t>(panels.size());
+void write(const Picture& picture, const std::string& path) {
     formats::Image image;
-    image.width = count * kWidth + (count - 1) * kGap;
+    image.width = kWidth;
     image.height = kHeight;
-    image.pixel.assign(std::size_t{image.width} * image.height, {1, 1, 1});
-    for (std::uint32_t k = 0; k < count; ++k) {
-        for (std::uint32_t y = 0; y < kHeight; ++y) {
-            for (std::uint32_t x = 0; x < kWidth; ++x) {
-                const glm::vec3 c(kExposure * panels[k][std::size_t{y} * kWidth + x]);
-                image.pixel[std::size_t{y} * image.width + k * (kWidth + kGap) + x] = {c.x, c.y,
-                                                                                       c.z};
-            }
-        }
+    for (const glm::dvec3& value : picture) {
+        const glm::vec3 c(kExposure * value);
+        image.pixel.push_back({c.x, c.y, c.z});
     }
     if (!formats::write_png(path, formats::to_srgb(image))) {
         std::fprintf(stderr, "cannot write %s\n", path.c_str());
@@ -197,26 +170,11 @@ void make_figure(const std::string& path, std::uint32_t particles) {
     std::uint64_t traced = 0;
     const ParticleLight light = trace_particles(scene, rays, sources[0], layout,
                                                 {.particles = particles}, Context{}, traced);
-    const std::vector<ElementLight> gathered{layout.join(light.all, kGatheredElements)};
-    // As a bake has it: 16 times the particles, 2 million at most.
-    const std::uint32_t more = std::max(particles, std::min(16 * particles, 2000000u));
-    const ElementLayout fine(scene, 4 * reflecting_area(scene) / more);
-    const std::vector<ElementLight> caustics{
-        fine.join(trace_particles(scene, rays, sources[0], fine,
-                                  {.particles = more, .only_caustic = true}, Context{}, traced)
-                      .caustic,
-                  kCausticElements)};
     const ElementLight elements = layout.join(light.all);
-    std::vector<Picture> panels;
-    for (const ElementLight* const shown : {&elements, gathered.data()}) {
-        panels.push_back(render(
-            [&](std::uint32_t x, std::uint32_t y) { return shade_elements(view, *shown, x, y); }));
-    }
-    const LampLight lit{scene, rays,    sources, layout,   gathered, kGatherRays,
-                        0,     nullptr, nullptr, caustics, &fine};
-    panels.push_back(
-        render([&](std::uint32_t x, std::uint32_t y) { return shade_gathered(view, lit, x, y); }));
-    write(panels, path);
+    write(render([&](std::uint32_t x, std::uint32_t y) {
+              return shade_elements(view, elements, x, y);
+          }),
+          path);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/effects/transmission/view_fit.h"
-#include "bake/lamps/seen_lamps.h"
+#include "bake/exchange/seen_lamps.h"
 #include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
@@ -241,7 +241,7 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
 
 std::uint64_t add_straight_lamps(const StraightBody& body, const BodyPoint& point,
                                  std::uint32_t views, const RowLayout& layout, const DenseRow& row,
-                                 const LampLight& lamps) {
+                                 const LampBounces& lamps) {
     if (point.normal == glm::vec3(0)) return 0;
     std::uint64_t rays = 0;
     const PointViews own = follow_enough(body, point, views, rays);

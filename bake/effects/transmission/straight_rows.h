@@ -4,7 +4,7 @@
 
 #include "bake/effects/transmission/straight_paths.h"
 #include "bake/exchange/bounce_light.h"
-#include "bake/lamps/receiver_light.h"
+#include "bake/exchange/lamp_bounces.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/row_layout.h"
 
@@ -31,7 +31,7 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
 /// e of each row is lamp e.
 std::uint64_t add_straight_lamps(const StraightBody& body, const BodyPoint& point,
                                  std::uint32_t views, const RowLayout& layout, const DenseRow& row,
-                                 const LampLight& lamps);
+                                 const LampBounces& lamps);
 
 /// The surfaces from which light crosses the body straight to a point, by `views` of it, as of
 /// EffectDescriptor::look_through. Counts `rays`.

@@ -18,7 +18,6 @@
 #include "bake/effects/transmission/straight_rows.h"
 #include "bake/effects/transmission/view_fit.h"
 #include "bake/exchange/other_light.h"
-#include "bake/lamps/receiver_light.h"
 #include "bake/plan/stage_work.h"
 #include "bake/scattering/fresnel.h"
 #include "bake/truth/luminance.h"

@@ -78,33 +78,27 @@ inline double square_irradiance(double s, double t) {
            corner_factor(s, t);
 }
 
-/// Everything that rows of a scene are made from: the light that particles of its lamps leave.
+/// The lamps of a scene, and what their particles bring by metals and media alone.
 struct LampWorld {
     LampWorld(Scene given, double finest, bake::ParticleRun run)
         : scene(std::move(given)), layout(scene, finest) {
+        run.ends_diffuse = true;
         std::uint64_t traced = 0;
         for (run.lamp = 0; run.lamp < sources.size(); ++run.lamp) {
-            const bake::ParticleLight light =
-                bake::trace_particles(scene, rays, sources[run.lamp], layout, run, {}, traced);
-            elements.push_back(layout.join(light.all, bake::kGatheredElements));
-            caustics.push_back(light.caustic.empty()
-                                   ? bake::ElementLight{}
-                                   : layout.join(light.caustic, bake::kCausticElements));
+            particles.push_back(
+                bake::trace_particles(scene, rays, sources[run.lamp], layout, run, {}, traced));
+            const auto& caustic = particles.back().caustic;
+            caustics.push_back(caustic.empty() ? bake::ElementLight{}
+                                               : layout.join(caustic, bake::kCausticElements));
         }
     }
     bake::LampLight light(std::uint32_t samples = 256) const {
-        return {scene, rays, sources, layout, elements, samples, 0, nullptr, nullptr, caustics};
+        return {scene, rays, sources, samples, 0, caustics, &layout};
     }
+    /// Without what surfaces reflect diffusely.
     glm::dvec3 at(const bake::Receiver& receiver) const {
         std::uint64_t traced = 0;
-        return bake::receive_light(light(64), receiver, 1, traced)[0];
-    }
-    std::vector<std::vector<formats::Rgb>> rows(std::uint32_t primitive, std::uint32_t terms = 1,
-                                                unsigned threads = 1) const {
-        bake::Context context;
-        context.threads = threads;
-        std::uint64_t traced = 0;
-        return bake::make_lamp_rows(light(), receivers[primitive], terms, context, traced);
+        return bake::receive_straight(light(64), receiver, 1, traced)[0];
     }
 
     Scene scene;
@@ -112,7 +106,8 @@ struct LampWorld {
     bake::RayScene rays = build_rays(scene);
     std::vector<bake::LampSources> sources = all_sources(scene);
     std::vector<bake::ReceiverSet> receivers = receivers_of(scene);
-    std::vector<bake::ElementLight> elements, caustics;
+    std::vector<bake::ElementLight> caustics;
+    std::vector<bake::ParticleLight> particles;
 };
 
 }  // namespace opaline::tests

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "bake/emitters/emitter_error.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 
 namespace opaline::bake {
@@ -143,36 +142,6 @@ TEST(OnwardRay, CausticOfRoughGlassIsSharperByTheLimitOfTheGradient) {
             error[i] += std::pow(double{found[e].x} - double{truth[e].x}, 2);
     }
     EXPECT_LT(std::sqrt(error[0]), 0.9 * std::sqrt(error[1]));
-}
-
-// Particles, gather rays and paths see the same room with a block of brass and a ball of glass.
-TEST(OnwardRay, RowsBesideMetalAndGlassAreThoseOfPathTracing) {
-    formats::Scene scene;
-    tests::add_surface(scene, tests::make_cube(2, true), 0.6f);
-    tests::add_surface(scene, tests::make_quad({-0.5f, -0.5f, 0.98f}, {0, 1, 0}, {1, 0, 0}), 0, 1);
-    formats::Primitive block = tests::make_cube(1, false);
-    for (glm::vec3& position : block.position)
-        position = 0.35f * position + glm::vec3(0.4f, 0.3f, -0.64f);
-    add_metal(scene, block, {0.9f, 0.7f, 0.4f}, 0.3f);
-    tests::add_surface(scene, tests::make_sphere(4, 0.35f, {-0.5f, -0.4f, -0.6f}), 1).medium =
-        glass(1.5f, 0, 0.2f);
-    const tests::LampWorld shone(scene, 0.01, {200000});
-    const LampLight light = shone.light(1024);
-    const EmitterCheck check{scene, shone.rays, {}, {}, shone.sources, {}, &light};
-    std::uint64_t traced = 0, key = 7;
-    double squares = 0;
-    const std::array<Receiver, 4> places{{{{-0.6f, -0.2f, -0.999f}, {0, 0, 1}},
-                                          {{-0.1f, 0.6f, -0.999f}, {0, 0, 1}},
-                                          {{0.7f, 0.2f, 0.999f}, {0, 0, -1}},
-                                          {{-0.999f, 0, 0.1f}, {1, 0, 0}}}};
-    for (const Receiver& place : places) {
-        const double truth = trace_irradiance(check, collect_true_sources(check.sources), place,
-                                              20000, 3, ++key, traced)
-                                 .y;
-        const double found = receive_light(light, place, key, traced)[0].y;
-        squares += (found / truth - 1) * (found / truth - 1) / 4;
-    }
-    EXPECT_LT(std::sqrt(squares), 0.02);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/lamps/media_light.h"
 #include "bake/lamps/onward_ray.h"
 #include "bake/lamps/straight_light.h"
 #include "bake/scene/texture_pyramid.h"
@@ -36,40 +35,6 @@ formats::Scene floor_under_ceiling(float albedo) {
     tests::add_surface(scene, tests::make_quad({0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 4), 0, 1);
     tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), albedo);
     return scene;
-}
-
-// Light that the ceiling gets back from the floor, by vertex.
-std::vector<double> returned_light(const formats::Scene& scene, bool is_filtered) {
-    const ScenePyramids textures = make_scene_pyramids(scene);
-    const ScenePyramids* const used = is_filtered ? &textures : nullptr;
-    const tests::LampWorld world(scene, 0.05, {20000, 0, 0, 0, used});
-    LampLight light = world.light(64);
-    light.textures = used;
-    std::uint64_t traced = 0;
-    const auto rows = make_lamp_rows(light, world.receivers[0], 1, Context{}, traced);
-    std::vector<double> green;
-    for (const formats::Rgb c : rows.at(0)) {
-        green.push_back(static_cast<double>(c.g));
-    }
-    return green;
-}
-
-double difference_of(const std::vector<double>& a, const std::vector<double>& b) {
-    double square = 0, all = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        square += (a[i] - b[i]) * (a[i] - b[i]);
-        all += b[i] * b[i];
-    }
-    return std::sqrt(square / all);
-}
-
-// The same rays and particles, which go no further than the floor.
-TEST(TexturedLight, AFineCheckerReflectsWhatItsMeanReflects) {
-    formats::Scene checker = floor_under_ceiling(0.8f);
-    checker.materials[1].base_color_image = add_checker(checker);
-    const std::vector<double> mean = returned_light(floor_under_ceiling(0.4f), false);
-    EXPECT_LT(difference_of(returned_light(checker, true), mean), 2e-3);
-    EXPECT_GT(difference_of(returned_light(checker, false), mean), 0.03) << "as points have it";
 }
 
 // Particles that leave a checker again are as many, and as bright, as those that leave its mean.
@@ -164,19 +129,6 @@ TEST(TexturedLight, AGlowingTriangleHasThePowerOfItsTexturesMean) {
     };
     EXPECT_NEAR(power_of(&textures) / (0.5 * std::numbers::pi), 1, 1e-3);
     EXPECT_GT(std::abs(power_of(nullptr) / (0.5 * std::numbers::pi) - 1), 0.02);
-}
-
-// What a medium sends out again: its image over the triangle, and over what is seen of it.
-TEST(TexturedLight, MediaSendOutTheMeanOfTheirImage) {
-    formats::Scene scene = floor_under_ceiling(0);
-    scene.materials[1].base_color_image = add_checker(scene);
-    const ScenePyramids textures = make_scene_pyramids(scene);
-    MediaLight media{{{}, std::vector<glm::vec3>(4, glm::vec3(2))}};
-    for (const GlowingTriangle& t : media_sources(scene, media, 0, {}, &textures).triangles) {
-        EXPECT_NEAR(t.radiance.y, std::numbers::inv_pi, 1e-3);
-    }
-    const TextureView over{textures, {0.01, 0, 0.01}};
-    EXPECT_NEAR(media_exitance(scene, media, 0, {1, 0}, {0.3f, 0.3f, 0.4f}, &over).y, 1, 5e-3);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ struct OtherSetup {
     std::vector<Scatterer> scatterers = at_samples();
     BounceTree tree{scatterers, 1, 0};
     std::vector<std::uint32_t> patch = numbers();
-    PatchLight columns{PatchLight::Scatterers{scatterers, tree, patch, {0}}, patch};
+    PatchLight columns{scatterers, tree, patch, {0}, patch};
     OtherLight light{.patches = &columns, .bands = 1, .environment = false};
 
     std::vector<Scatterer> at_samples() const {

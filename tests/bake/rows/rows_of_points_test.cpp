@@ -6,6 +6,7 @@
 
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/exchange/lamp_bounces.h"
 #include "bake/exchange/other_light.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/bake/lamps/lamp_scenes.h"
@@ -33,10 +34,9 @@ TEST(RowsOfPoints, AreLinearInLightThatReplacesTheEnvironment) {
     lamps.lights = {{.name = "red", .intensity = {1, 0, 0}, .position = {0, 0, 5}},
                     {.name = "green", .intensity = {2, 4, 0}, .position = {0, 0, 5}}};
     const auto sources = tests::all_sources(lamps);
-    const ElementLayout layout(lamps, 1);
-    const std::vector<ElementLight> nothing(2);
-    const LampLight lamp_light{lamps, setup.rays, sources, layout, nothing, 16, 0};
-    const OtherLight light{.lamps = &lamp_light, .environment = false};
+    const LampLight straight{lamps, setup.rays, sources, 16};
+    const LampBounces alone{straight};
+    const OtherLight light{.lamps = &alone, .environment = false};
     BakeInputs bake{all_effects(), setup.scene, facts, setup.rays, *sky, sets, &light};
     const std::vector<PlanEntry> plan = plan_bake(setup.scene, facts, knobs);
     std::vector<SubjectState> subjects = begin_subjects(bake, plan, knobs);

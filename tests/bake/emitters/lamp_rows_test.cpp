@@ -1,22 +1,22 @@
 // What receivers get of lamps, straight and from surfaces.
-#include "bake/lamps/receiver_light.h"
+#include "bake/emitters/lamp_rows.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "tests/bake/lamps/lamp_scenes.h"
+#include "tests/bake/emitters/bounced_lamps.h"
 
 namespace opaline::bake {
 namespace {
 
 // Irradiance 2 on walls of exitance 1 and albedo 1/2: light that arrives from outside of the room
 // counts as none, and corners are as bright as the middle of a wall.
-TEST(ReceiverLight, InAFurnaceIsEvenEverywhere) {
+TEST(LampRows, InAFurnaceIsEvenEverywhere) {
     formats::Scene scene;
     tests::add_surface(scene, tests::make_cube(4, true), 0.5f, std::numbers::inv_pi_v<float>);
-    const tests::LampWorld lit(std::move(scene), 0.05, {100000});
+    const tests::BouncedLamps lit(std::move(scene), 0.05, {100000});
     const auto rows = lit.rows(0);
     double sum = 0, area = 0;
     for (std::size_t r = 0; r < rows.at(0).size(); ++r) {
@@ -24,7 +24,7 @@ TEST(ReceiverLight, InAFurnaceIsEvenEverywhere) {
         EXPECT_NEAR(irradiance, 2, 0.04);
         double share = 2;  // of a cell; its own wall counts as an edge
         for (int axis = 0; axis < 3; ++axis) {
-            if (std::abs(lit.receivers[0].outside[r].origin[axis]) > 0.99f) share /= 2;
+            if (std::abs(lit.world.receivers[0].outside[r].origin[axis]) > 0.99f) share /= 2;
         }
         sum += share * irradiance;
         area += share;
@@ -33,11 +33,11 @@ TEST(ReceiverLight, InAFurnaceIsEvenEverywhere) {
 }
 
 // Nothing leaks through a wall: what stands on its far side is dark.
-TEST(ReceiverLight, DoesNotPassThroughAThinWall) {
+TEST(LampRows, DoesNotPassThroughAThinWall) {
     formats::Scene scene = tests::parallel_squares(2);
     tests::add_surface(scene, tests::make_quad({-9, -9, 0.5f}, {20, 0, 0}, {0, 20, 0}), 0.8f);
     scene.materials[2].double_sided = true;
-    const tests::LampWorld lit(std::move(scene), 0.05, {100000});
+    const tests::BouncedLamps lit(std::move(scene), 0.05, {100000});
     const auto rows = lit.rows(1);
     for (const formats::Rgb& row : rows.at(0)) {
         EXPECT_EQ(row, formats::Rgb{});
@@ -45,13 +45,13 @@ TEST(ReceiverLight, DoesNotPassThroughAThinWall) {
 }
 
 // A red wall lights what it faces red.
-TEST(ReceiverLight, ColourBleeds) {
+TEST(LampRows, ColourBleeds) {
     formats::Scene scene;
     tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1), 1);
     tests::add_surface(scene, tests::make_quad({0, 0, 0}, {0, 1, 0}, {0, 0, 1}, 1), 1)
         .base_color = {0.8f, 0.1f, 0.1f};
     scene.lights.push_back({.name = "", .position = {0.7f, 0.5f, 0.8f}});
-    const tests::LampWorld lit(std::move(scene), 0.05, {100000});
+    const tests::BouncedLamps lit(std::move(scene), 0.05, {100000});
     const auto rows = lit.rows(0);
     const formats::Rgb beside = rows[0][0], away = rows[0][3];
     EXPECT_GT(beside.r, 1.05f * beside.g);
@@ -59,24 +59,24 @@ TEST(ReceiverLight, ColourBleeds) {
 }
 
 // T_0 holds what the front shows, T_1 the back; a lamp on one side alone.
-TEST(ReceiverLight, ThinWallsShowLightOnBothSides) {
+TEST(LampRows, ThinWallsShowLightOnBothSides) {
     formats::Scene scene;
     tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), 1).sheet =
         formats::Sheet{{0.6f, 0.6f, 0.6f}, {0.3f, 0.2f, 0.1f}};
     scene.lights.push_back({.name = "", .intensity = {4, 4, 4}, .position = {0, 0, 2}});
-    const auto rows = tests::LampWorld(std::move(scene), 0.05, {1000}).rows(0, 2);
+    const auto rows = tests::BouncedLamps(std::move(scene), 0.05, {1000}).rows(0, 2);
     const float E = 1 * std::numbers::inv_pi_v<float>;
     EXPECT_NEAR(rows[0][0].g, 0.6f * E, 1e-3f);
     EXPECT_NEAR(rows[0][1].r, 0.3f * E, 1e-3f);
     EXPECT_NEAR(rows[0][1].b, 0.1f * E, 1e-3f);
 }
 
-TEST(ReceiverLight, LampsDoNotMixAndThreadsDoNotMatter) {
+TEST(LampRows, LampsDoNotMixAndThreadsDoNotMatter) {
     formats::Scene scene;
     tests::add_surface(scene, tests::make_cube(2, true), 0.5f);
     scene.lights.push_back({.name = "", .intensity = {1, 0, 0}});
     scene.lights.push_back({.name = "", .intensity = {0, 0, 1}, .position = {0.5f, 0, 0}});
-    const tests::LampWorld lit(std::move(scene), 0.05, {10000});
+    const tests::BouncedLamps lit(std::move(scene), 0.05, {10000});
     const auto rows = lit.rows(0);
     ASSERT_EQ(rows.size(), 2u);
     for (std::size_t i = 0; i < rows[0].size(); ++i) {

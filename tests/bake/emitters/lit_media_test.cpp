@@ -1,13 +1,9 @@
-// Light that media send out, as it is read at hits and as it starts again; and media as lamps find
-// them.
-#include "bake/lamps/media_light.h"
+// Light of lamps as media take it, and media as lamps find them.
+#include "bake/emitters/lit_media.h"
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
-#include "bake/emitters/light_media.h"
-#include "bake/emitters/media_patches.h"
+#include "bake/emitters/immersed_lamps.h"
 #include "bake/exchange/other_light.h"
 #include "bake/receivers/surface_patches.h"
 #include "tests/bake/lamps/lamp_scenes.h"
@@ -23,43 +19,16 @@ formats::Scene square_of_wax() {
     return scene;
 }
 
-TEST(MediaLight, IsMixedOverTrianglesAndStartsWithItsPower) {
-    const formats::Scene scene = square_of_wax();
-    MediaLight media{{std::vector<glm::vec3>(8)}};
-    for (std::size_t v = 0; v < 4; ++v) {
-        media.exitance[0][v] = glm::vec3(static_cast<float>(v) + 1);
-        media.exitance[0][4 + v] = {0, 3, 0};
-    }
-    EXPECT_FALSE(media.empty());
-    const std::uint32_t* const corner = scene.primitives[0].index.data();
-    const glm::dvec3 mixed = media_exitance(scene, media, 0, {0, 0, false}, {0.5f, 0.25f, 0.25f});
-    EXPECT_NEAR(mixed.x, 0.5 * corner[0] + 0.25 * corner[1] + 0.25 * corner[2] + 1, 1e-6);
-    EXPECT_EQ(media_exitance(scene, media, 1, {0, 3, false}, {0, 0, 1}), glm::dvec3(0, 3, 0));
-    EXPECT_EQ(media_exitance(scene, media, 1, {0, 3, true}, {0, 0, 1}), glm::dvec3(0));
-
-    LampSources lamp;
-    lamp.radius = 7;
-    const LampSources sources = media_sources(scene, media, 1, lamp);
-    ASSERT_EQ(sources.triangles.size(), 2u);
-    const glm::dvec3 power = sources.triangles[0].power() + sources.triangles[1].power();
-    EXPECT_NEAR(power.y, 3 * 4, 1e-5);
-    EXPECT_EQ(power.x, 0);
-    EXPECT_NEAR(sources.triangles[0].normal.z, 1, 1e-9);
-    EXPECT_EQ(sources.radius, 7);
-    EXPECT_TRUE(MediaLight{{{}}}.empty());
-}
-
 // The light of a lamp stands in its column, red, green and blue apart. Rows take their share of
 // each band, and grey ones the luminance.
-TEST(MediaLight, ColumnsHoldIrradiance) {
+TEST(LitMedia, ColumnsHoldIrradiance) {
     formats::Scene scene = square_of_wax();
     scene.lights.push_back({.name = "A", .intensity = {1, 2, 3}, .position = {1, 1, 2}});
     scene.lights.push_back({.name = "B", .intensity = {8, 0, 0}, .position = {1, 1, 2}});
     const RayScene rays = tests::build_rays(scene);
     const auto sources = tests::all_sources(scene);
-    const ElementLayout layout(scene, 1);
-    const std::vector<ElementLight> nothing(2);
-    const LampLight light{scene, rays, sources, layout, nothing, 16, 0};
+    const LampLight lamps{scene, rays, sources, 16};
+    const LampBounces light{lamps};
     const OtherLight columns{.lamps = &light, .environment = false};
     EXPECT_FALSE(has_environment(&columns));
     std::vector<float> rows(18);
@@ -114,32 +83,6 @@ TEST(MediaPatches, FacesOfAThinWallAreApart) {
     }
     EXPECT_EQ(cut_into_patches(std::span(points).first(3), 24).size(), 3u);
     EXPECT_TRUE(cut_into_patches({}, 24).empty());
-}
-
-// B_i+1 = 1 + q B_i, from 0: 1 / (1 - q), each lamp and band by itself.
-TEST(SeriesSum, AddsWhatFurtherPassesWould) {
-    const glm::vec3 q[2] = {{0.5f, 0.25f, 0}, {0.9f, 0.1f, 0.5f}};
-    SeriesSum series(2, 0.05);
-    MediaLight light{std::vector<std::vector<glm::vec3>>(2)};
-    int passes = 0;
-    for (bool is_last = false; !is_last; ++passes) {
-        ASSERT_LT(passes, 100);
-        MediaLight next{std::vector<std::vector<glm::vec3>>(2)};
-        for (std::size_t i = 0; i < 6; ++i) {
-            const glm::vec3 before =
-                light.exitance[1].empty() ? glm::vec3(0) : light.exitance[1][i];
-            next.exitance[1].push_back(glm::vec3(1) + q[i / 3] * before);
-        }
-        is_last = series.is_last(light, next, false);
-        light = std::move(next);
-    }
-    EXPECT_LT(passes, 30);
-    for (std::size_t i = 0; i < 6; ++i) {
-        for (int b = 0; b < 3; ++b) {
-            EXPECT_NEAR(light.exitance[1][i][b], 1 / (1 - q[i / 3][b]), 2e-3 / (1 - q[i / 3][b]));
-        }
-    }
-    EXPECT_TRUE(SeriesSum(2, 0.05).is_last(light, light, false)) << "nothing changes";
 }
 
 TEST(ImmersedLamps, AreThoseInsideOfMediaNotInTheirHollows) {

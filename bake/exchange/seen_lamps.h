@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <span>
 
-#include "bake/lamps/receiver_light.h"
+#include "bake/exchange/lamp_bounces.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/effect.h"
 
@@ -14,7 +14,7 @@ namespace opaline::bake {
 /// surfaces and volumes that glow, and exitance over pi of the others, the same in all directions;
 /// metals and media pass a view on. `solid_angle` [sr] of each view: textures are means over it.
 /// `key`: of the random numbers. Any thread; returns the rays traced.
-std::uint64_t add_seen_lamps(const LampLight& light, std::span<const SurfaceView> views,
+std::uint64_t add_seen_lamps(const LampBounces& light, std::span<const SurfaceView> views,
                              double solid_angle, std::uint64_t key, const DenseRow& row);
 
 }  // namespace opaline::bake

@@ -1,4 +1,4 @@
-#include "bake/lamps/seen_lamps.h"
+#include "bake/exchange/seen_lamps.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,14 +8,30 @@
 #include <vector>
 
 #include "bake/base/rng.h"
+#include "bake/exchange/surface_side.h"
 #include "bake/lamps/onward_ray.h"
 #include "bake/scene/emission.h"
+#include "bake/scene/texture_footprint.h"
 
 namespace opaline::bake {
 namespace {
 
 constexpr std::uint32_t kMostPassedOn = 16;
 constexpr double kLeastPassedOn = 1e-3;  // of what a view sees
+
+// What a cone of directions [sr] sees of the surface at a hit, to look its texture up over; none
+// where that does not vary.
+std::optional<TextureView> view_of_cone(const LampLight& light, const Arrival& at,
+                                        const glm::vec3& direction, double solid_angle) {
+    const formats::Primitive& primitive = light.scene.primitives[at.side.primitive];
+    if (light.textures == nullptr ||
+        !has_pyramid(*light.textures, light.scene.materials[primitive.material])) {
+        return std::nullopt;
+    }
+    return TextureView{*light.textures,
+                       moments_of_cone(uv_gradient(primitive, at.side.first_index), direction,
+                                       glm::vec3(at.normal), at.distance, solid_angle)};
+}
 
 glm::dvec3 emission_toward(const LampLight& light, const Arrival& at, const TextureView* view) {
     const formats::Primitive& primitive = light.scene.primitives[at.side.primitive];
@@ -34,7 +50,8 @@ glm::dvec3 emission_toward(const LampLight& light, const Arrival& at, const Text
 // Radiance times pi of each lamp along a view.
 class LampView {
   public:
-    LampView(const LampLight& light, std::vector<glm::dvec3>& sum) : light_(light), sum_(sum) {}
+    LampView(const LampBounces& bounces, std::vector<glm::dvec3>& sum)
+        : bounces_(bounces), light_(bounces.lamps), sum_(sum) {}
 
     std::uint64_t follow(const SurfaceView& look, double solid_angle, std::uint64_t key,
                          std::uint32_t number) {
@@ -53,7 +70,7 @@ class LampView {
                       volume_transmittance(light_.volumes, from, direction, reach);
             const auto view =
                 flight == 0 ? view_of_cone(light_, *at, look.direction, solid_angle) : std::nullopt;
-            add_surface(*at, weight, view ? &*view : nullptr);
+            add_surface(from + reach * direction, *at, weight, view ? &*view : nullptr);
             const bool is_medium = lets_through(light_.scene, *at);
             if (!is_medium && mirror_chance(light_.scene, *at, direction) == 0) return rays;
             const auto x = random_uniform(light_.seed, RandomStage::gather_rays, key,
@@ -74,8 +91,9 @@ class LampView {
     }
 
   private:
-    void add_surface(const Arrival& at, const glm::dvec3& weight, const TextureView* view) {
-        add_reflected(light_, at, weight, view, sum_);
+    void add_surface(const glm::dvec3& position, const Arrival& at, const glm::dvec3& weight,
+                     const TextureView* view) {
+        add_sent(position, at, weight);
         const glm::dvec3 glow = emission_toward(light_, at, view);
         if (glow == glm::dvec3(0)) return;
         for (std::size_t lamp = 0; lamp < sum_.size(); ++lamp) {
@@ -83,6 +101,18 @@ class LampView {
             if (std::ranges::find(own, at.side.primitive) != own.end()) {
                 sum_[lamp] += std::numbers::pi * weight * glow;
             }
+        }
+    }
+
+    // Of the scatterer nearest to the hit.
+    void add_sent(const glm::dvec3& position, const Arrival& at, const glm::dvec3& weight) {
+        if (bounces_.empty()) return;
+        const formats::Primitive& primitive = light_.scene.primitives[at.side.primitive];
+        const std::uint32_t node = bounces_.surfaces->tree.find(
+            glm::vec3(position), {primitive.material, at.side.is_back, glm::vec3(at.normal)}, 0);
+        if (node == formats::kNone) return;
+        for (std::size_t lamp = 0; lamp < sum_.size(); ++lamp) {
+            sum_[lamp] += weight * sent_by(bounces_, lamp, node);
         }
     }
 
@@ -95,16 +125,17 @@ class LampView {
         }
     }
 
+    const LampBounces& bounces_;
     const LampLight& light_;
     std::vector<glm::dvec3>& sum_;
 };
 
 }  // namespace
 
-std::uint64_t add_seen_lamps(const LampLight& light, std::span<const SurfaceView> views,
+std::uint64_t add_seen_lamps(const LampBounces& light, std::span<const SurfaceView> views,
                              double solid_angle, std::uint64_t key, const DenseRow& row) {
     std::uint64_t rays = 0;
-    std::vector<glm::dvec3> seen(light.sources.size());
+    std::vector<glm::dvec3> seen(light.lamps.sources.size());
     for (std::uint32_t i = 0; i < views.size(); ++i) {
         const SurfaceView& view = views[i];
         std::ranges::fill(seen, glm::dvec3(0));
