@@ -101,7 +101,8 @@ std::vector<bake::VolumeRow> make_volume_rows(const formats::VolumesView& volume
 }
 
 void write_volumes(const RelightCommand& options, const formats::VolumesView& volumes,
-                   const runtime::LightVector& light, const runtime::ShadeOptions& shading) {
+                   const runtime::LightVector& light, const runtime::ShadeOptions& shading,
+                   bool is_alone) {
     if (volumes.empty()) return;
     if (ending_of(options.output) != ".csv") {
         print_note("opaline: the file has volumes, which only .csv outputs show");
@@ -110,8 +111,12 @@ void write_volumes(const RelightCommand& options, const formats::VolumesView& vo
     const runtime::VolumeLight lit = runtime::relight_volumes(
         volumes, light,
         {.terms = shading.terms, .emitters = shading.emitters, .threads = shading.threads});
-    require(bake::write_volume_csv(volumes_path(options.output),
-                                   make_volume_rows(volumes, lit, shading.eye)));
+    const std::filesystem::path path = volumes_path(options.output);
+    require(bake::write_volume_csv(path, make_volume_rows(volumes, lit, shading.eye)));
+    if (is_alone) {
+        print_note("opaline: " + printable(options.output) + ": the file has no receivers; " +
+                   printable(path.string()) + " has the nodes of its volumes");
+    }
 }
 
 int run(const RelightCommand& options) {
@@ -145,7 +150,8 @@ int run(const RelightCommand& options) {
     const PartVectors parts = project_parts(view, layers, light, options.threads);
     const runtime::PartLights lights = parts.lights();
     runtime::shade(view, lights, radiance, shading);
-    write_volumes(options, view.volumes, lights.light[lights.of_volumes], shading);
+    write_volumes(options, view.volumes, lights.light[lights.of_volumes], shading,
+                  view.receivers() == 0);
     const std::vector<bake::RelightRow> rows = make_rows(view, radiance);
     const std::string ending = ending_of(options.output);
     require(ending == ".csv"   ? bake::write_relight_csv(options.output, rows)

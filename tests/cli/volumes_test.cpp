@@ -25,6 +25,7 @@ TEST(VolumeFiles, RelightWritesATableOfReceiversAndOneOfNodes) {
     const std::string out = small.path("o.csv"), volumes = small.path("o-volumes.csv");
     const Outcome mean = run_well({"relight", file, "--light", "studio", "--json", "-o", out});
     EXPECT_EQ(read_text(out), "primitive,vertex,r,g,b\n");
+    EXPECT_THAT(mean.err, HasSubstr("o-volumes.csv has the nodes"));
     EXPECT_THAT(read_text(volumes), StartsWith("volume,i,j,k,r,g,b\n0,"));
     EXPECT_EQ(count_lines(volumes), asset.volumes.node.size() + 1);
     EXPECT_EQ(nlohmann::json::parse(mean.out)["volume_nodes"], asset.volumes.node.size());
