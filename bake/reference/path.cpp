@@ -117,6 +117,11 @@ bool meet_surface(const PathSpace& space, Path& path, const SurfaceHit& hit, Ran
 
 void reach_sky(const PathSpace& space, Path& path) {
     const bool is_background = path.state.stage == PathState::Stage::camera;
+    if (!path.stack.empty() && space.scene.is_closed) {
+        // Along an edge or in the plane of a face rounding may miss where a body ends.
+        path.stack = {};
+        path.state = after_crossing(path.state, true);
+    }
     if (!path.stack.empty()) {
         path.lost = true;
     } else if (is_background ? space.options.terms == TermSet::all

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/reference/ggx.h"
+#include "bake/scene/body_shells.h"
 #include "bake/scene/media_order.h"
 
 namespace opaline::bake {
@@ -15,13 +16,18 @@ formats::Result<ReferenceScene> make_reference_scene(const formats::Scene& scene
                                                      unsigned threads) {
     auto surfaces = HitScene::build(scene, threads);
     if (!surfaces) return std::move(surfaces).error();
-    ReferenceScene result{std::move(*surfaces),    {}, {}, false, make_volume_space(scene), {},
-                          make_lamp_sampler(scene)};
+    ReferenceScene result{.surfaces = std::move(*surfaces),
+                          .media = {},
+                          .medium_of = {},
+                          .volumes = make_volume_space(scene),
+                          .clearance = {},
+                          .lamps = make_lamp_sampler(scene)};
     float densest = 0;
     result.medium_of.assign(scene.materials.size(), formats::kNone);
     for (const std::uint32_t number : order_media(scene)) {
         result.medium_of[number] = static_cast<std::uint32_t>(result.media.size());
         const formats::Medium& m = *scene.materials[number].medium;
+        result.is_closed = result.is_closed && make_body_shells(scene, number).open_edges == 0;
         ReferenceMedium medium;
         medium.sigma_s = {m.sigma_s.r, m.sigma_s.g, m.sigma_s.b};
         medium.sigma_t = medium.sigma_s + glm::vec3(m.sigma_a.r, m.sigma_a.g, m.sigma_a.b);

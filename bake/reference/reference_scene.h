@@ -19,6 +19,7 @@ struct ReferenceScene {
     std::vector<ReferenceMedium> media;    ///< of materials that have one, as order_media says
     std::vector<std::uint32_t> medium_of;  ///< by material; formats::kNone: opaque
     bool has_matched_boundary = false;     ///< some medium has an index of 1
+    bool is_closed = true;                 ///< no medium's surface ends at an edge
     VolumeSpace volumes;                   ///< they fill the space outside of bodies
     ClearanceGrid clearance;               ///< trivial if there are no media
     LampSampler lamps;                     ///< the scene's own light

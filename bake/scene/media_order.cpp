@@ -8,9 +8,10 @@
 namespace opaline::bake {
 namespace {
 
-// Enclosed by all bodies of a material [m^3]. About one of their corners, so that an open body far
+// Enclosed by all bodies of a material [m^3], in the digits that do not depend on how they are cut
+// into triangles. About one of their corners, so that an open body far
 // from the origin is no larger for that.
-double enclosed_volume(const formats::Scene& scene, std::uint32_t material) {
+float enclosed_volume(const formats::Scene& scene, std::uint32_t material) {
     std::optional<glm::dvec3> origin;
     double volume = 0;
     for (const formats::Primitive& p : scene.primitives) {
@@ -22,13 +23,13 @@ double enclosed_volume(const formats::Scene& scene, std::uint32_t material) {
             volume += glm::dot(a - *origin, glm::cross(b - *origin, c - *origin)) / 6;
         }
     }
-    return std::abs(volume);
+    return static_cast<float>(std::abs(volume));
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> order_media(const formats::Scene& scene) {
-    std::vector<double> volume(scene.materials.size());
+    std::vector<float> volume(scene.materials.size());
     std::vector<std::uint32_t> order;
     for (auto m = static_cast<std::uint32_t>(scene.materials.size()); m-- > 0;) {
         if (!scene.materials[m].medium) continue;

@@ -52,7 +52,7 @@ void follow(const WalkSpace& space, std::span<const WalkStart> starts, std::uint
 void print_cell(const formats::Scene& scene) {
     constexpr std::uint32_t kSites = 120, kRounds = 6;
     constexpr double kWalks = 12e6;  // as at production
-    const EmbreeScene triangles = EmbreeScene::build(scene, 1).value();
+    const EmbreeScene triangles = EmbreeScene::build(scene, 1, true).value();
     const WalkSpace plain = make_walk_space(scene, triangles, 0, true);
     WalkSpace with_balls = plain;
     double before = processor_seconds();

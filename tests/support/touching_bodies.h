@@ -79,6 +79,13 @@ inline Primitive make_drink(float gap) {
     return make_box({-wall, -wall, -wall}, {wall, 0.5f, wall}, 5);
 }
 
+/// Clear, with a boundary that loses no light between facets.
+inline formats::Medium make_smooth_glass(float eta) {
+    formats::Medium glass = make_grey_medium(0, 0, eta);
+    glass.roughness = 0;
+    return glass;
+}
+
 /// Several bodies that absorb nothing: everything shows what an even sky shows.
 struct BodiesThatMeet {
     std::string name;
@@ -87,7 +94,7 @@ struct BodiesThatMeet {
 
 inline std::vector<BodiesThatMeet> make_bodies_that_meet() {
     const formats::Medium milk = make_grey_medium(20, 0, 1.33f), wax = make_grey_medium(9, 0, 1.5f),
-                          glass = make_grey_medium(0, 0, 1.5f), ice = make_grey_medium(0, 0, 1.31f);
+                          glass = make_smooth_glass(1.5f), ice = make_smooth_glass(1.31f);
     const Primitive low = make_box({-1, -1, -1}, {1, 0, 1}, 4);
     return {{"StackedWithFacesOfOtherTriangles",
              {{low, milk}, {make_box({-1, 0, -1}, {1, 1, 1}, 3), wax}}},

@@ -33,19 +33,19 @@ TEST(TouchingFurnace, ThreeNestedBallsAreAsBrightAsTheSky) {
     const bake::Estimate estimate =
         see_furnace(make_nested_scene({{make_sphere(2), make_grey_medium(20, 0, 1.33f)},
                                        {make_sphere(2, 0.7f), make_grey_medium(9, 0, 1.5f)},
-                                       {make_sphere(2, 0.4f), make_grey_medium(0, 0, 1.2f)}}));
+                                       {make_sphere(2, 0.4f), make_smooth_glass(1.2f)}}));
     EXPECT_NEAR(merged(estimate.pixel).mean.y, 1, 1e-3);
 }
 
-// A clear cube of index 1 over a black one, so that what is seen from above says who fills the
+// Of a clear body and one that absorbs, what is seen from above says which of them fills the
 // overlap: the smaller one, wherever it stands in the file.
 TEST(TouchingFurnace, InAnOverlapTheBodyOfLeastVolumeFillsTheSpace) {
     const Primitive large = make_box({-1, -1, -1}, {1, 1, 1}, 1),
-                    small = make_box({-0.5f, 0, -0.5f}, {0.5f, 1.5f, 0.5f}, 1);
-    const formats::Medium clear = make_grey_medium(0, 0, 1), dark = make_grey_medium(0, 3, 1);
+                    small = make_box({-0.5f, 0, -0.5f}, {0.5f, 2, 0.5f}, 1);
+    const formats::Medium clear = make_grey_medium(0, 0, 1), dark = make_grey_medium(0, 1, 1);
     const auto look_down_on = [&](std::vector<Part> parts) {
         const auto fixture = make_fixture(make_nested_scene(std::move(parts)), make_white_sky());
-        return look(fixture->space(), {0.2f, 3, 0.1f}, {0, -1, 0}, 64).mean.y;
+        return look(fixture->space(), {0.2f, 3, 0.1f}, {0, -1, 0}, 40000);
     };
     for (const bool is_first : {false, true}) {
         std::vector<Part> dark_is_large{{large, dark}, {small, clear}};
@@ -54,8 +54,10 @@ TEST(TouchingFurnace, InAnOverlapTheBodyOfLeastVolumeFillsTheSpace) {
             std::swap(dark_is_large[0], dark_is_large[1]);
             std::swap(dark_is_small[0], dark_is_small[1]);
         }
-        EXPECT_NEAR(look_down_on(dark_is_large), std::exp(-3.0 * 1), 1e-6);
-        EXPECT_NEAR(look_down_on(dark_is_small), std::exp(-3.0 * 1.5), 1e-6);
+        for (const auto& [parts, depth] : {std::pair(dark_is_large, 1), {dark_is_small, 2}}) {
+            const bake::Moments seen = look_down_on(parts);
+            EXPECT_NEAR(seen.mean.y, std::exp(-1.0 * depth), 4 * standard_error(seen));
+        }
     }
 }
 

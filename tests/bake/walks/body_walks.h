@@ -28,7 +28,7 @@ inline std::unique_ptr<WalkedBody> make_walked_scene(Scene scene, bool grey = tr
                                                      std::span<const std::uint32_t> inner = {}) {
     auto walked = std::make_unique<WalkedBody>();
     walked->scene = std::move(scene);
-    walked->triangles.emplace(bake::EmbreeScene::build(walked->scene, 1).value());
+    walked->triangles.emplace(bake::EmbreeScene::build(walked->scene, 1, true).value());
     walked->space = bake::make_walk_space(walked->scene, *walked->triangles, 0, grey, inner);
     return walked;
 }
