@@ -264,10 +264,4 @@ MetalPart metal_part(const formats::Scene& scene, const TriangleSide& side,
             roughness * roughness};
 }
 
-glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,
-                           const glm::vec3& weights, const TextureView* view) {
-    return base_color_texture(
-        scene, surface_place(scene, side.primitive, side.first_index, weights), view);
-}
-
 }  // namespace opaline::bake

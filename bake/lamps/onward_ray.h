@@ -37,10 +37,6 @@ struct MetalPart {
 MetalPart metal_part(const formats::Scene& scene, const TriangleSide& side,
                      const glm::vec3& weights);
 
-/// The base color's image there, white without one.
-glm::vec3 base_image_color(const formats::Scene& scene, const TriangleSide& side,
-                           const glm::vec3& weights, const TextureView* view = nullptr);
-
 /// Where a ray meets a surface.
 struct Arrival {
     TriangleSide side;
