@@ -1,5 +1,7 @@
 #include "bake/scene/texture_footprint.h"
 
+#include <algorithm>
+#include <cmath>
 
 namespace opaline::bake {
 
@@ -23,6 +25,27 @@ glm::dmat3x2 uv_gradient(const formats::Primitive& primitive, std::uint32_t firs
 UvMoments moments_of_area(const glm::dmat3x2& duv_dP, double area) {
     const glm::dmat2 squares = area * (duv_dP * glm::transpose(duv_dP));
     return {squares[0][0], squares[0][1], squares[1][1]};
+}
+
+UvMoments moments_of_edges(const glm::dmat3x2& duv_dP, const glm::dvec3& a, const glm::dvec3& b) {
+    UvMoments moments;
+    moments.add(duv_dP * a);
+    moments.add(duv_dP * b);
+    return moments;
+}
+
+UvMoments moments_of_cone(const glm::dmat3x2& duv_dP, const glm::dvec3& direction,
+                          const glm::dvec3& normal, double distance, double solid_angle) {
+    constexpr double kLeastCosine = 1e-4;
+    const double width = distance * std::sqrt(solid_angle);
+    const double cosine = glm::dot(direction, normal);
+    const glm::dvec3 across = glm::cross(direction, normal);
+    const double sine = glm::length(across);
+    if (!(sine > 1e-6)) return moments_of_area(duv_dP, width * width);
+    // Across the plane of incidence as wide as the cone, along it 1 / cosine longer.
+    const glm::dvec3 along = (direction - cosine * normal) / sine;
+    return moments_of_edges(duv_dP, width / sine * across,
+                            width / std::max(std::abs(cosine), kLeastCosine) * along);
 }
 
 UvMoments moments_of_triangle(const std::array<glm::dvec2, 3>& uv) {

@@ -46,6 +46,14 @@ TEST(TextureFootprint, WithoutCoordinatesOrAreaItIsAPoint) {
     EXPECT_EQ(uv_gradient(p, 0), glm::dmat3x2(0.0));
 }
 
+// A cone of 0.01 sr, 2 m away, at 60 degrees: 0.2 m across, 0.4 m along.
+TEST(TextureFootprint, AConeIsStretchedAlongTheRayByTheCosine) {
+    const glm::dmat3x2 map{{1, 0}, {0, 1}, {0, 0}};
+    const glm::dvec3 slanted{std::sqrt(0.75), 0, -0.5};
+    expect_moments(moments_of_cone(map, slanted, {0, 0, 1}, 2, 0.01), {0.16, 0, 0.04});
+    expect_moments(moments_of_cone(map, {0, 0, -1}, {0, 0, 1}, 2, 0.01), {0.04, 0, 0.04});
+}
+
 // The mean of squares over a triangle is that of its corners' offsets over 12; a box of the
 // same second moments has 12 times that.
 TEST(TextureFootprint, ATriangleHasItsSecondMoments) {
