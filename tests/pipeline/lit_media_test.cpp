@@ -38,15 +38,11 @@ formats::Scene ball_in_a_cube(const formats::Material& ball, float albedo, Rgb e
     return scene;
 }
 
-// The dipole has no light that scatters once: without it on both sides.
 BakeOptions options_of(MultipleModel model) {
     BakeOptions options;
     options.quality = Quality::draft;
     options.threads = 1;
-    options.effects = {"direct", "multiple", "emitters"};
-    if (model != MultipleModel::dipole) {
-        options.effects.emplace_back("single");
-    }
+    options.effects = {"direct", "multiple", "single", "emitters"};
     options.set(kMultipleModel, static_cast<double>(model));
     options.set(kEmitterParticles, 5000);
     options.set(kSamples, 2000);

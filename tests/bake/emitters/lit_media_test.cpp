@@ -93,6 +93,8 @@ TEST(ImmersedLamps, AreThoseInsideOfMediaNotInTheirHollows) {
         const RayScene rays = tests::build_rays(scene);
         return is_immersed(scene, rays, tests::all_sources(scene).front());
     };
+    EXPECT_FALSE(is_in()) << "light crosses it";
+    scene.materials[0].medium->sigma_s = {1, 1, 1};
     EXPECT_TRUE(is_in());
     scene.materials[0].medium.reset();
     EXPECT_FALSE(is_in()) << "opaque around it";
