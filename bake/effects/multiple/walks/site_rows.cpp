@@ -209,6 +209,7 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
     struct Part {
         SiteRows::Block block;
         WalkCounts counts;
+        std::vector<std::array<float, 3>> scattered;
     };
     for_each_block_in_order(
         starts.size(), SiteRows::kPerBlock, context,
@@ -216,13 +217,22 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
             Part part;
             SiteWalker walker(space, light, view_fit, options);
             for (std::size_t site = range.begin; site < range.end; ++site) {
+                std::array<float, 3>* share = nullptr;
+                if (options.orders.crosses_others) {
+                    share = &part.scattered.emplace_back(std::array<float, 3>{1, 1, 1});
+                }
                 if (!is_read.empty() && is_read[site] == 0) {
                     part.block.offset.insert(part.block.offset.end(), options.views,
                                              part.block.offset.back());
                     continue;
                 }
+                WalkCounts of_site;
                 const std::span<float> own =
-                    walker.walk(starts[site], static_cast<std::uint32_t>(site), part.counts);
+                    walker.walk(starts[site], static_cast<std::uint32_t>(site), of_site);
+                part.counts += of_site;
+                for (std::size_t b = 0; share != nullptr && b < 3; ++b) {
+                    (*share)[b] = static_cast<float>(of_site.scattered_share(b));
+                }
                 const std::size_t size = own.size() / options.views;
                 if (subtract) {
                     subtract(site, own.first(size));
@@ -239,6 +249,8 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
         [&](Range range, Part&& part) {
             rows.blocks.push_back(std::move(part.block));
             counts += part.counts;
+            rows.scattered.insert(rows.scattered.end(), part.scattered.begin(),
+                                  part.scattered.end());
             if (context.on_progress) {
                 context.on_progress({"walks", range.end, starts.size()});
             }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -25,6 +26,8 @@ struct SiteRows {
     std::vector<Block> blocks;  ///< each of kPerBlock sites, the last of as many or fewer
     std::uint32_t bands = 3;    ///< or 1
     std::uint32_t views = 1;    ///< rows of a site: 1, 4 or 9
+    /// WalkCounts::scattered_share of each site, where WalkOrders::crosses_others; else none.
+    std::vector<std::array<float, 3>> scattered;
 };
 
 struct SiteRowOptions {

@@ -100,6 +100,7 @@ class Walk {
     void go_on(std::uint32_t event) {
         for (; event < space_.most_events; ++event) {
             ++counts_.events;
+            if (orders_.is_straight_alone && is_scattered_) return;
             if (!(may_jump() ? jump() : fly(flight_length()))) return;
         }
         give_up(counts_.endless);

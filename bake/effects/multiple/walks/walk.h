@@ -111,6 +111,9 @@ struct WalkOrders {
     /// Light that is not scattered counts where it went through another body: `transmission` holds
     /// what stays in its own.
     bool crosses_others = false;
+    /// Walks end where they are scattered or meet another body: what is left is their share of
+    /// light that does neither.
+    bool is_straight_alone = false;
 };
 
 /// Follows one walk backwards from the eye (README.md, "The estimator"). The start's direction is

@@ -41,6 +41,11 @@ double WalkCounts::scale(std::size_t band, bool fills_crossed) const {
     return all * share / ended;
 }
 
+double WalkCounts::scattered_share(std::size_t band) const {
+    const double all = scattered[band] + straight.all(band) - filled[band];
+    return all > 0 ? scattered[band] / all : 0;
+}
+
 WalkCounts& WalkCounts::operator+=(const WalkCounts& other) {
     walks += other.walks;
     events += other.events;

@@ -51,6 +51,8 @@ struct WalkCounts {
     /// absorbed after a scattering add up to what scatters (README.md, "Sums"). `fills_crossed`: to
     /// all light.
     double scale(std::size_t band, bool fills_crossed) const;
+    /// Of all light of a band, the share that scatters, or is taken for such, by itself.
+    double scattered_share(std::size_t band) const;
     /// The factor by which walks that scatter stand for those `filled`, of bands that count by
     /// `shares`. A quotient, as nearly all may cross: what scatters is known far better than 1 less
     /// what does not.

@@ -186,6 +186,11 @@ WalkStage take_walks(const WalkSpace& space, const ExitLight& light,
     stage.rows =
         walk_from_sites(space, starts, light, rows, subtract, context, stage.counts, is_read);
     stage.view_fit = make_view_fit(static_cast<double>(space.eta));
+    stage.orders = options.rows.orders;
+    stage.seed = options.rows.seed;
+    if (stage.orders.crosses_others) {
+        stage.space = space;
+    }
     if (options.is_inside) {
         const formats::Medium& medium = *space.scene->materials[space.material].medium;
         const double path = transport_mean_free_path(medium);
@@ -209,20 +214,65 @@ float WalkStage::tint(glm::vec3 position, glm::vec3 normal) const {
     return glm::dot(sum, glm::vec3(0.2126f, 0.7152f, 0.0722f)) / kDepths.size();
 }
 
+namespace {
+
+// What scatters at a point or meets other bodies, over what does at its sites, by band. Rows of
+// `transmission` hold the rest of the point's own light, so that both are all of it.
+glm::vec3 scale_to_own(const WalkStage& stage, const BodyPoint& point,
+                       std::span<const SiteWeight> weights) {
+    constexpr std::uint32_t kWalks = 64;
+    constexpr float kMost = 4, kLeast = 0.02f;
+    const WalkSpace& space = *stage.space;
+    WalkStart start{point.inner, point.normal, point.normal,
+                    std::max(1, count_shells(space, point.inner, -point.normal))};
+    if (space.bodies) {
+        start.around = bodies_at_start(space, point.inner);
+    }
+    start.vertex = point.position;
+    WalkOrders orders = stage.orders;
+    orders.is_straight_alone = true;
+    WalkCounts counts;
+    std::vector<WalkExit> exits;
+    // The same of all points, so that neighbours differ by their light alone.
+    std::uint32_t number = 0;
+    for (WalkGroup group; group.flies_as < space.bands.size(); ++group.flies_as) {
+        for (std::uint32_t w = 0; w < kWalks; ++w) {
+            WalkRandom random({stage.seed, RandomStage::body_walk, 0x7fffffffu, number++}, true);
+            follow_walk(space, group, start, orders, random, exits, counts);
+        }
+    }
+    glm::vec3 scale(1);
+    for (glm::length_t b = 0; b < 3; ++b) {
+        const auto band = static_cast<std::size_t>(b);
+        float of_sites = 0;
+        for (const SiteWeight& w : weights) {
+            of_sites += w.weight * stage.rows.scattered[w.site][band];
+        }
+        const auto own = static_cast<float>(counts.scattered_share(band));
+        scale[b] = of_sites > kLeast ? std::min(kMost, own / of_sites) : 1;
+    }
+    return stage.rows.bands == 1 ? glm::vec3(scale.x) : scale;
+}
+
+}  // namespace
+
 void add_walked_rows(const WalkStage& stage, const BodyPoint& point, float scale,
                      std::span<float> rgbx, std::span<float> views) {
     if (stage.rows.blocks.empty()) return;
     std::vector<SiteWeight> weights;
     stage.field.weigh(point.position, point.normal, weights,
                       stage.tint(point.position, point.normal));
+    const glm::vec3 own = stage.rows.scattered.empty() || point.normal == glm::vec3(0)
+                              ? glm::vec3(scale)
+                              : scale * scale_to_own(stage, point, weights);
     for (const SiteWeight& w : weights) {
-        add_site_row(stage.rows, w.site, 0, glm::vec3(scale * w.weight), rgbx);
+        add_site_row(stage.rows, w.site, 0, w.weight * own, rgbx);
     }
     if (views.empty()) return;
     stage.view_field.weigh(point.position, point.normal, weights);
     for (const SiteWeight& w : weights) {
         for (std::uint32_t k = 1; k < stage.rows.views; ++k) {
-            add_site_row(stage.rows, w.site, k, glm::vec3(scale * w.weight),
+            add_site_row(stage.rows, w.site, k, w.weight * own,
                          views.subspan((k - 1) * rgbx.size(), rgbx.size()));
         }
     }

@@ -61,8 +61,10 @@ double inner_radius(const SitePlan& plan, double mean_free_path);
 struct WalkStage {
     SiteField field, view_field;     ///< the latter of rows by view: they vary less and are noisier
     InnerField inner;                ///< instead of both, where sites are inside
-    std::optional<WalkSpace> space;  ///< of the inner field
-    bool fills_crossed = false;      ///< of its flights, as of WalkOrders
+    std::optional<WalkSpace> space;  ///< of the inner field, and where light crosses other bodies
+    WalkOrders orders{};
+    std::uint64_t seed = 0;
+    bool fills_crossed = false;  ///< of its flights, as of WalkOrders
     SiteRows rows;
     ViewFit view_fit;  ///< of the boundary
     WalkCounts counts;
