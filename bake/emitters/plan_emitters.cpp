@@ -91,6 +91,19 @@ double times_sky(const formats::Scene& scene, const Lamp& lamp, double radius) {
     return sky > 0 ? flux / sky : 0;
 }
 
+// [m] Of the ball around all surfaces; without any, around all volumes.
+double radius_of(const formats::Scene& scene) {
+    PointBox box = box_of_surfaces(scene);
+    if (box.low.x > box.high.x) {
+        for (const formats::Volume& volume : scene.volumes) {
+            for (const glm::dvec3& corner : volume.density.corners()) {
+                box.include(corner);
+            }
+        }
+    }
+    return box.low.x <= box.high.x ? box.radius() : 0;
+}
+
 std::string describe_light(const formats::Scene& scene, const Lamp& lamp, double radius) {
     char text[128];
     if (!lamp.lights.empty()) {
@@ -116,19 +129,24 @@ EmitterPlan plan_emitters(const formats::Scene& scene, const Knobs& knobs) {
     EmitterPlan plan;
     const bool has_surfaces =
         std::ranges::any_of(scene.primitives, [](const auto& p) { return !p.index.empty(); });
+    const bool is_scattered = std::ranges::any_of(scene.volumes, [](const formats::Volume& volume) {
+        return brightest(volume).once >= kLeastBound;
+    });
+    const bool is_lit = has_surfaces || is_scattered;
     std::uint32_t number = 0;
     std::vector<Lamp> lamps = list_lamps(scene);
-    const double radius = lamps.empty() ? 0 : box_of_surfaces(scene).radius();
+    const double radius = lamps.empty() ? 0 : radius_of(scene);
     for (const Lamp& lamp : lamps) {
         PlanEntry entry;
         entry.name = kEmitters;
         entry.subject = {Subject::Kind::emitter, number++, "emitter '" + lamp.name + "'"};
         entry.has_bands = true;
-        entry.bound = has_surfaces ? std::numeric_limits<double>::quiet_NaN() : 0;
-        entry.on = has_surfaces && is_wanted(knobs, entry.name);
-        entry.reason = entry.on       ? describe_light(scene, lamp, radius)
-                       : has_surfaces ? "left out by --effects"
-                                      : "there is no surface that it could light";
+        entry.bound = is_lit ? std::numeric_limits<double>::quiet_NaN() : 0;
+        entry.on = is_lit && is_wanted(knobs, entry.name);
+        entry.reason = entry.on ? describe_light(scene, lamp, radius) +
+                                      (is_scattered ? "; volumes scatter it" : "")
+                       : is_lit ? "left out by --effects"
+                                : "there is nothing that it could light";
         if (entry.on) plan.lamps.push_back(lamp);
         plan.entries.push_back(std::move(entry));
     }

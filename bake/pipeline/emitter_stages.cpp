@@ -54,11 +54,9 @@ bool has_dark_media(const BakeInputs& bake, std::span<const PlanEntry> plan,
     });
 }
 
-// `of_volumes`: all lamps are volumes, which light each other.
-void warn_of_unlit(const formats::Scene& scene, bool has_dark, bool of_volumes,
+void warn_of_unlit(const formats::Scene& scene, bool has_dark,
                    std::vector<formats::Diagnostic>& warnings) {
     std::string unlit = has_dark ? "media whose multiple scattering is left out" : "";
-    if (!scene.volumes.empty() && !of_volumes) unlit += unlit.empty() ? "volumes" : ", volumes";
     if (!scene.layers.empty()) unlit += unlit.empty() ? "cloud layers" : ", cloud layers";
     if (unlit.empty()) return;
     warnings.push_back(
@@ -182,10 +180,7 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
                 error_percent(limit),
             "give more --emitter-rays and --emitter-particles"));
     }
-    const bool of_volumes =
-        std::ranges::all_of(lamps, [](const Lamp& lamp) { return lamp.volume != formats::kNone; });
-    warn_of_unlit(bake.scene, has_dark_media(bake, result.plan, subjects), of_volumes,
-                  result.warnings);
+    warn_of_unlit(bake.scene, has_dark_media(bake, result.plan, subjects), result.warnings);
     warn_of_immersed(baked->immersed, result.warnings);
     return check_media(bake, lamps, context, result);
 }

@@ -101,9 +101,10 @@ SurfaceLight find_light_of_surfaces(const BakeInputs& unlit, const Knobs& knobs,
 
 // What an inspected scene becomes: all stages from the receivers on. `subjects`: left studied.
 // `light`: becomes what surfaces send.
-formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
-                               const BakeExtras& extras, std::vector<SubjectState>& subjects,
-                               SurfaceLight& light, BakeResult& result) {
+formats::Status bake_inspected(const BakeInputs& unlit, std::span<const Lamp> lamps,
+                               const Context& context, const BakeExtras& extras,
+                               std::vector<SubjectState>& subjects, SurfaceLight& light,
+                               BakeResult& result) {
     Knobs& knobs = result.knobs;
     StageLog& log = result.stages;
     std::vector<TestLight> lights;  // none where there is nothing to relight
@@ -126,7 +127,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, const Context& context,
     light = find_light_of_surfaces(unlit, knobs, planned, context, subjects, log);
     BakeInputs bake = unlit;
     bake.light = light.shared ? &*light.shared : nullptr;
-    const VolumeStages stages{bake.effects, bake.scene, bake.rays, light.seen()};
+    const VolumeStages stages{bake.effects, bake.scene, bake.rays, light.seen(), lamps};
     std::optional<formats::Result<BakedVolumes>> volumes;
     if (!subjects.empty() && colours_surfaces(bake.scene, planned)) {
         std::ranges::for_each(subjects, [](SubjectState& s) { s.layout.coloured = true; });
@@ -269,7 +270,8 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     }
     std::vector<SubjectState> subjects;
     SurfaceLight light;
-    if (auto status = bake_inspected(bake, context, extras, subjects, light, result); !status) {
+    if (auto status = bake_inspected(bake, plan.lamps, context, extras, subjects, light, result);
+        !status) {
         return std::move(status).error();
     }
     if (!plan.layers.empty()) {

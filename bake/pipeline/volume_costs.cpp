@@ -7,6 +7,7 @@
 #include "bake/accuracy/pilot/pilot.h"
 #include "bake/pipeline/volume_stages.h"
 #include "bake/truth/draw_receivers.h"
+#include "bake/volumes/lamp_walks.h"
 #include "bake/volumes/volume_effects.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_parts.h"
@@ -32,6 +33,26 @@ Work glow_work(const VolumeWork& work, const VolumeLayout& layout) {
     const double steps = work.depth_steps / (work.nodes * work.cells);
     return {0, work.nodes * layout.glow_walks * work.tracks *
                    (flights * kVolumeFlight + kGlowing * steps * kDensityStep)};
+}
+
+// Walks of a volume that gather light of lamps, and those of all lamps that arrives: a shadow ray
+// and a march each, at collisions and around nodes.
+struct LampWork {
+    Work walks, of_lamp;
+};
+LampWork lamp_work(const CostInput& input, const VolumeWork& work, const VolumeLayout& layout) {
+    constexpr double kShortWalk = 2, kFewCollisions = 0.5, kApart = 4, kHalfWay = 0.5;
+    if (!(work.nodes > 0) || layout.glow_walks == 0) return {};
+    const bool is_counted = work.walks > 0 && work.flights > 0;
+    const double counted = work.nodes * work.walks;
+    const double flights = is_counted ? work.flights / counted : kShortWalk;
+    const double collisions = is_counted ? work.collisions / counted : kFewCollisions;
+    const double walks = work.nodes * layout.glow_walks * work.tracks;
+    const double steps = kHalfWay * work.depth_steps / (work.nodes * work.cells);
+    const double ray = input.triangles > 0 ? kApart * kCoherentRay.at(input.triangles) : 0;
+    const double arrivals = walks * collisions + work.nodes * kStraightPoints;
+    return {{0, walks * flights * (kVolumeFlight + ray)},
+            {0, arrivals * (steps * kDensityStep + ray)}};
 }
 
 // Three halves a term, four bytes a voxel of the bricks that glow: half of them as a guess.
@@ -137,6 +158,25 @@ void bill_volumes(const CostRequest& request, const CostedVolumes& volumes, Bill
         bill.open("self-check of light of volumes");
         bill.add({0, check_seconds});
     }
+    std::vector<PlanEntry*> lamps;
+    for (std::uint32_t i = 0; i < list_lamps(request.scene).size(); ++i) {
+        PlanEntry* const own = bill.payer(Subject::Kind::emitter, i, kEmitters);
+        if (own != nullptr) lamps.push_back(own);
+    }
+    const bool are_lit =
+        std::ranges::any_of(layouts, [](const auto& own) { return own.glow_terms > 0; });
+    if (lamps.empty() || !are_lit) return;
+    bill.open(kLampsInVolumes);
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        const LampWork work = lamp_work(input, works[i], layouts[i]);
+        const double share = 1 / static_cast<double>(lamps.size());
+        for (PlanEntry* const lamp : lamps) {
+            bill.add({0, share * work.walks.shared + work.of_lamp.shared}, lamp);
+            bill.add_bytes(6 * works[i].nodes * layouts[i].glow_terms, lamp);
+        }
+    }
+    bill.open("self-check of emitters in volumes");
+    bill.add({0, static_cast<double>(kEventsOfLamps) * check_seconds});
 }
 
 void bill_completion(const CostRequest& request, const CostedVolumes& volumes, double receivers,

@@ -10,6 +10,8 @@
 #include "bake/accuracy/volumes/volume_error.h"
 #include "bake/base/interrupted.h"
 #include "bake/transport/density/density_space.h"
+#include "bake/volumes/bake_glow.h"
+#include "bake/volumes/lamp_walks.h"
 #include "bake/volumes/place_nodes.h"
 #include "bake/volumes/volume_knobs.h"
 #include "bake/volumes/volume_work.h"
@@ -114,6 +116,36 @@ formats::Status measure_glow(const VolumeStages& inputs, const Context& context,
     return formats::ok_status();
 }
 
+// What volumes scatter of the light of lamps, and how far it errs.
+formats::Status add_light_of_lamps(const VolumeStages& inputs, const Context& context,
+                                   StageLog& log, BakedVolumes& baked) {
+    const auto& layouts = baked.parts.layouts;
+    const bool are_lit =
+        std::ranges::any_of(layouts, [](const auto& own) { return own.glow_terms > 0; }) &&
+        std::ranges::any_of(inputs.lamps,
+                            [](const Lamp& lamp) { return lamp.volume == formats::kNone; });
+    if (!are_lit) return formats::ok_status();
+    const VolumeJob job{baked.parts.scene_or(inputs.scene), inputs.rays, layouts, baked.knobs};
+    formats::Glow& glow = baked.volumes.glow;
+    glow = run_stage(log, kLampsInVolumes, "emitters: rows", [&](std::uint64_t& traced) {
+        return join_glow(glow, bake_lamp_glow(job, place_nodes(job), {inputs.scene, inputs.lamps},
+                                              context, traced));
+    });
+    if (context.cancelled()) return interrupted();
+    const auto first = static_cast<std::uint32_t>(count_glowing(layouts));
+    auto error = run_stage(
+        log, "self-check of emitters in volumes", "self-check", [&](std::uint64_t& traced) {
+            VolumeCheckOptions effort = check_effort(baked, inputs.scene);
+            effort.max_events *= kEventsOfLamps;
+            auto found = check_lamps(inputs.scene, view_of(baked), first, effort, context);
+            traced += found ? found->events : 0;
+            return found;
+        });
+    if (!error) return std::move(error).error();
+    baked.lamps = *error;
+    return formats::ok_status();
+}
+
 }  // namespace
 
 VolumeCheckOptions volume_check_effort(std::span<const VolumeWork> works,
@@ -161,9 +193,14 @@ void number_glow(std::span<const Lamp> lamps, BakeResult& result) {
         }
         append_emitter(emitters, free_emitter_name(result.glowing_volumes[glow], taken));
     }
-    for (formats::GlowRecord& record : result.asset.volumes.glow.record) {
+    for (std::uint32_t e = 0; e < lamps.size(); ++e) {
+        number.push_back(e);
+    }
+    formats::Glow& glow = result.asset.volumes.glow;
+    for (formats::GlowRecord& record : glow.record) {
         record.emitter = number[record.emitter];
     }
+    glow = join_glow(glow, {});
 }
 
 formats::Result<BakedVolumes> bake_and_measure(const VolumeStages& inputs, const Knobs& knobs,
@@ -172,6 +209,9 @@ formats::Result<BakedVolumes> bake_and_measure(const VolumeStages& inputs, const
                                         : bake_and_check(inputs, knobs, context, log);
     if (!baked) return baked;
     if (auto status = measure_glow(inputs, context, log, *baked); !status) {
+        return std::move(status).error();
+    }
+    if (auto status = add_light_of_lamps(inputs, context, log, *baked); !status) {
         return std::move(status).error();
     }
     return baked;
@@ -219,6 +259,10 @@ void add_volumes(const formats::Scene& scene, BakedVolumes&& baked, BakeResult& 
     if (baked.glow) {
         result.error.add_part("light of volumes", baked.glow->rays_checked,
                               baked.glow->rms_relative);
+    }
+    if (baked.lamps) {
+        result.error.add_part("emitters in volumes", baked.lamps->rays_checked,
+                              baked.lamps->rms_relative);
     }
     replace_entries(Subject::Kind::volume, baked.plan.entries, result.plan);
     result.asset.volumes = std::move(baked.volumes);

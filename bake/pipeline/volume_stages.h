@@ -30,6 +30,7 @@ struct VolumeStages {
     const formats::Scene& scene;
     const RayScene& rays;                   ///< surfaces; may be empty
     const BounceLight* surfaces = nullptr;  ///< what they send to volumes; null: nothing
+    std::span<const Lamp> lamps = {};       ///< of the file
 };
 
 /// Volumes of one quality, and how far they err.
@@ -41,6 +42,7 @@ struct BakedVolumes {
     VolumeFindings findings;
     std::optional<VolumeErrorReport> error;  ///< nothing: they scatter no light
     std::optional<GlowErrorReport> glow;     ///< nothing: none is an emitter
+    std::optional<GlowErrorReport> lamps;    ///< nothing: none lights them
     std::vector<VolumeTrial> trials;         ///< where an error was asked for, in their order
 };
 
@@ -49,6 +51,9 @@ struct BakedVolumes {
 /// `works`: of the layouts.
 VolumeCheckOptions volume_check_effort(std::span<const VolumeWork> works,
                                        std::span<const VolumeLayout> layouts, const Knobs& knobs);
+
+/// Times as many events for light of lamps, where paths near them are rare and bright.
+inline constexpr std::uint64_t kEventsOfLamps = 4;
 
 /// The presets' values of all volumes' knobs that the user did not give, and the quality that
 /// their plan goes by.

@@ -55,6 +55,11 @@ inline bool counts_lamps(const PathSpace& space) {
     return !space.scene.lamps.empty() && has_any(space.options.terms, TermSet::emitters);
 }
 
+/// Whether that of a lamp that such a path meets, or is sampled from it, counts.
+inline bool counts_lamps(const PathSpace& space, PathState state) {
+    return counts_lamps(space) && (state.by_volume || !space.options.by_volumes);
+}
+
 /// True if volumes send out light by themselves and it is counted.
 inline bool counts_glow(const PathSpace& space) {
     return !space.scene.volumes.glowing.empty() && has_any(space.options.terms, TermSet::emitters);
@@ -71,7 +76,8 @@ inline bool is_wanted(const PathSpace& space, PathState state) {
     if (is_left_out || is_late) {
         terms = terms & ~TermSet::interreflection;
     }
-    return has_any(reachable_terms(state), terms) || counts_lamps(space) || counts_glow(space);
+    return has_any(reachable_terms(state), terms) || (counts_lamps(space) && !is_late) ||
+           counts_glow(space);
 }
 
 /// A point of an opaque surface that a path has arrived at. Normals face the path.

@@ -89,7 +89,7 @@ void gather_from_sides(const PathSpace& space, Path& path, glm::vec3 at, bool se
     if (sees_sky) {
         gather_sky(space, path, random, eval);
     }
-    if (counts_lamps(space)) {
+    if (counts_lamps(space, path.state)) {
         gather_lamps(space, path, at, random, eval);
     }
 }

@@ -80,7 +80,8 @@ void meet_emission(const PathSpace& space, Path& path, const SurfaceHit& hit,
                    const TextureView* view) {
     const formats::Scene& scene = space.scene.surfaces.scene();
     const formats::Material& material = scene.materials[scene.primitives[hit.primitive].material];
-    if (!counts_lamps(space) || !is_seen_to_glow(material, path.direction, hit.flat)) return;
+    if (!counts_lamps(space, path.state) || !is_seen_to_glow(material, path.direction, hit.flat))
+        return;
     const float weight =
         path.pdf > 0 ? path.pdf / (path.pdf + pdf_triangle(space.scene.lamps, hit, path.vertex))
                      : 1.0f;

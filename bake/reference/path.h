@@ -28,6 +28,7 @@ struct PathOptions {
     CrossedLight crossed = CrossedLight::counted;
     /// Of `interreflection` counts what a volume scattered last, toward the eye or, with
     /// `through_volumes`, toward the first surface or body: light that surfaces sent to volumes.
+    /// Likewise of what lamps that are no volumes sent.
     bool by_volumes = false;
 };
 

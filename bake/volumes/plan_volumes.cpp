@@ -9,10 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "bake/lamps/lamps.h"
 #include "bake/plan/plan_input.h"
 #include "bake/transport/density/density_space.h"
 #include "bake/transport/density/scaled_phase.h"
 #include "bake/volumes/choose_method.h"
+#include "bake/volumes/lamp_spacing.h"
 #include "bake/volumes/largest_light.h"
 #include "bake/volumes/node_albedo.h"
 #include "bake/volumes/node_lattice.h"
@@ -51,8 +53,8 @@ std::uint32_t choose_walks(const ScaledPhase& phase, std::uint32_t terms, const 
     return static_cast<std::uint32_t>(std::lround(knobs[kVolumeWalks] * spread));
 }
 
-std::uint32_t spacing_of(const formats::Volume& volume, const DensityVolume& own,
-                         const Knobs& knobs) {
+std::uint32_t spacing_of(const formats::Scene& scene, const formats::Volume& volume,
+                         const DensityVolume& own, const Knobs& knobs) {
     if (const double given = knobs[kVolumeSpacing]; given > 0) {
         return static_cast<std::uint32_t>(given);
     }
@@ -60,6 +62,7 @@ std::uint32_t spacing_of(const formats::Volume& volume, const DensityVolume& own
     std::uint32_t spacing =
         choose_spacing(own.grid->value, volume.density.to_scene,
                        static_cast<double>(std::ranges::max(own.sigma_t)), spacing_depth(knobs));
+    spacing = typical_spacing(lamp_spacings(scene, volume.density, knobs), volume.density, spacing);
     // Where albedos differ, they are known at nodes alone.
     constexpr std::array<double, 4> kDetail{0.2, 0.1, 0.05, 0.02};
     while (lost_albedo_detail(own, spacing) > kDetail[quality]) {
@@ -144,10 +147,11 @@ void lay_out_often(const PlanEntry& often, const PlanEntry& seen, const ScaledPh
     }
 }
 
-// What nodes of a volume scatter of the light of all volumes.
-void scatter_glow_of_all(double glow, double once, const ScaledPhase& phase, const Knobs& knobs,
-                         VolumeLayout& layout) {
-    const double bound = scattered_glow(glow, once);
+// What nodes of a volume scatter of the light of all volumes, and of lamps, which may be as bright
+// as they like.
+void scatter_glow_of_all(double glow, bool has_lamps, double once, const ScaledPhase& phase,
+                         const Knobs& knobs, VolumeLayout& layout) {
+    const double bound = has_lamps ? once : scattered_glow(glow, once);
     if (bound >= least_bound(knobs, kDecisions) || (knobs.simulate_all && bound > 0)) {
         layout.glow_terms = phase.harmonics();
         layout.glow_walks = choose_walks(phase, layout.glow_terms, knobs);
@@ -204,6 +208,7 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
     VolumePlan plan;
     const DensitySpace space = make_density_space(scene);
     const double glow = all_glow(scene, knobs);
+    const bool has_lamps = is_wanted(knobs, kEmitters) && !list_lamps(scene).empty();
     const SentShare share = largest_share_of_surfaces(scene);
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         const formats::Volume& volume = scene.volumes[v];
@@ -212,7 +217,8 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         const ScaledPhase phase = scale_phase(volume.phase);
         PlanEntry once = decide(kOnceInVolumes, subject, most.once, knobs);
         PlanEntry often = decide(kOftenInVolumes, subject, most.once * most.once, knobs);
-        VolumeLayout layout{.volume = v, .spacing = spacing_of(volume, space.volumes[v], knobs)};
+        VolumeLayout layout{.volume = v,
+                            .spacing = spacing_of(scene, volume, space.volumes[v], knobs)};
         layout.whole = v;
         layout.once_terms = once.terms = once.on ? phase.harmonics() : 0;
         explain(once,
@@ -227,8 +233,8 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         lay_out_often(often, seen, phase, knobs, layout);
         often.terms = often.on ? layout.often_terms : 0;
         seen.terms = seen.on ? layout.often_terms : 0;
-        if (glow > 0) {
-            scatter_glow_of_all(glow, most.once, phase, knobs, layout);
+        if (glow > 0 || has_lamps) {
+            scatter_glow_of_all(glow, has_lamps, most.once, phase, knobs, layout);
         }
         std::vector<PlanEntry> entries{std::move(once), std::move(often)};
         if (!volume.emission.empty()) {

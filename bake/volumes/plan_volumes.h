@@ -25,7 +25,7 @@ struct VolumeLayout {
     /// Automatic: the bake measures both ways (choose_method.h).
     VolumeMethod method = VolumeMethod::walks;
     bool glows = false;            ///< its own light is baked
-    std::uint32_t glow_terms = 0;  ///< K_e: of scattered light of volumes; 0: none is
+    std::uint32_t glow_terms = 0;  ///< K_e: of scattered light of volumes and lamps; 0: none is
     std::uint32_t glow_walks = 0;  ///< from each node; 0 where glow_terms is
     bool lights_surfaces = false;  ///< its scattering to surfaces is baked
     bool sees_sky = true;          ///< rows of multiple scattering hold light of the sky

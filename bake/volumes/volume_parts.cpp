@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "bake/transport/density/scaled_phase.h"
+#include "bake/volumes/lamp_spacing.h"
 #include "bake/volumes/node_lattice.h"
 #include "bake/volumes/volume_knobs.h"
 
@@ -40,13 +41,20 @@ std::size_t count_nodes(const Grid& grid, std::uint32_t spacing) {
     return make_node_lattice(grid, spacing).node.size();
 }
 
-// Of a volume that is better whole, none. `own`: the distance that it has then.
-std::vector<Part> part_grid(const Grid& grid, std::uint32_t own, double sigma_t, double depth) {
+// Of a volume that is better whole, none. `own`: the distance that it has then; `by_lamps`: the
+// largest ones of bricks, or empty.
+std::vector<Part> part_grid(const Grid& grid, std::uint32_t own, double sigma_t, double depth,
+                            std::span<const std::uint32_t> by_lamps) {
     std::vector<std::uint32_t> spacing(grid.brick_count(), 0);  // 0: nothing in it
+    bool is_closer = false;                                     // by lamps
     for (std::uint32_t b = 0; b < spacing.size(); ++b) {
         const std::span<const float> values = grid.brick(b);
         if (std::ranges::any_of(values, [](float v) { return v > 0; })) {
             spacing[b] = choose_spacing(values, grid.to_scene, sigma_t, depth);
+            if (!by_lamps.empty() && by_lamps[b] < spacing[b]) {
+                spacing[b] = by_lamps[b];
+                is_closer = is_closer || spacing[b] < own;
+            }
         }
     }
     std::vector<Part> parts;
@@ -58,11 +66,11 @@ std::vector<Part> part_grid(const Grid& grid, std::uint32_t own, double sigma_t,
             nodes += count_nodes(parts.back().density, s);
         }
     }
-    constexpr double kMostOfClosest = 0.75, kMostOfOwn = 1.5;
+    constexpr double kMostOfClosest = 0.75, kMostOfOwn = 1.5, kMostWithLamps = 4;
     const auto is_within = [&](double share, std::uint32_t whole) {
         return static_cast<double>(nodes) <= share * static_cast<double>(count_nodes(grid, whole));
     };
-    if (parts.size() < 2 || !is_within(kMostOfOwn, own) ||
+    if (parts.size() < 2 || !is_within(is_closer ? kMostWithLamps : kMostOfOwn, own) ||
         !is_within(kMostOfClosest, parts.front().spacing)) {
         parts.clear();
     }
@@ -74,15 +82,15 @@ const VolumeLayout* find_layout(std::span<const VolumeLayout> layouts, std::uint
     return found == layouts.end() ? nullptr : &*found;
 }
 
-std::vector<Part> part_volume(const formats::Volume& volume, const VolumeLayout* layout,
-                              const Knobs& knobs) {
+std::vector<Part> part_volume(const formats::Scene& scene, const formats::Volume& volume,
+                              const VolumeLayout* layout, const Knobs& knobs) {
     if (layout == nullptr || !layout->has_nodes() || knobs[kVolumeSpacing] > 0 ||
         !volume.emission.empty() || !volume.scattering.empty()) {
         return {};
     }
     const std::array<float, 3> s = scale_medium(volume, scale_phase(volume.phase).peak).sigma_t;
     return part_grid(volume.density, layout->spacing, static_cast<double>(std::ranges::max(s)),
-                     spacing_depth(knobs));
+                     spacing_depth(knobs), lamp_spacings(scene, volume.density, knobs));
 }
 
 formats::Volume make_part(const formats::Volume& whole, Grid&& density) {
@@ -104,7 +112,7 @@ VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayo
     std::vector<std::vector<Part>> parts;
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         parts.push_back(count < kMostDrawn
-                            ? part_volume(scene.volumes[v], find_layout(layouts, v), knobs)
+                            ? part_volume(scene, scene.volumes[v], find_layout(layouts, v), knobs)
                             : std::vector<Part>());
         if (!parts.back().empty() && count + parts.back().size() - 1 > kMostDrawn) {
             parts.back().clear();

@@ -204,19 +204,22 @@ formats::Result<VolumeErrorReport> check_volumes(const formats::Scene& scene,
     return compare_volumes(luminance, through, *truth, options.seed);
 }
 
-formats::Result<GlowErrorReport> check_glow(const formats::Scene& scene,
-                                            const formats::AssetView& asset,
-                                            const VolumeCheckOptions& options,
-                                            const Context& context) {
-    const formats::Scene black = with_black_surfaces(scene);
-    const auto reference = make_reference_scene(black, context.threads);
+namespace {
+
+// The light of some emitters of a file against all that a scene's lamps and volumes send out.
+formats::Result<GlowErrorReport> check_emitted(const formats::Scene& shown,
+                                               const formats::AssetView& asset,
+                                               const runtime::EmitterLight& emitters,
+                                               const VolumeCheckOptions& options,
+                                               const Context& context) {
+    const auto reference = make_reference_scene(shown, context.threads);
     if (!reference) return reference.error();
     GlowErrorReport report;
     const std::vector<VolumeProbe> probes =
         choose_volume_probes(*reference, options.probes, options.seed);
     if (probes.empty()) return report;
     const std::vector<double> luminance =
-        march_glow(asset.volumes, scene.origin, probes, context.threads);
+        march_glow(asset.volumes, shown.origin, probes, context.threads, emitters);
     const auto truth = trace_volume_truth(
         *reference, probes, options.seed, options.max_events,
         [&](const VolumeTruth& so_far) {
@@ -234,11 +237,38 @@ formats::Result<GlowErrorReport> check_glow(const formats::Scene& scene,
     return report;
 }
 
+}  // namespace
+
+formats::Result<GlowErrorReport> check_glow(const formats::Scene& scene,
+                                            const formats::AssetView& asset,
+                                            const VolumeCheckOptions& options,
+                                            const Context& context) {
+    return check_emitted(with_black_surfaces(scene), asset, {}, options, context);
+}
+
+formats::Result<GlowErrorReport> check_lamps(const formats::Scene& scene,
+                                             const formats::AssetView& asset, std::uint32_t first,
+                                             const VolumeCheckOptions& options,
+                                             const Context& context) {
+    formats::Scene lit = scene;
+    std::uint32_t emitters = first;
+    for (formats::Volume& volume : lit.volumes) {
+        volume.emission = {};
+    }
+    for (const formats::GlowRecord& record : asset.volumes.glow.record) {
+        emitters = std::max(emitters, record.emitter + 1);
+    }
+    std::vector<formats::Rgb> color(emitters);
+    std::fill(color.begin() + first, color.end(), formats::Rgb{1, 1, 1});
+    return check_emitted(lit, asset, {.color = color}, options, context);
+}
+
 std::vector<double> march_glow(const formats::VolumesView& volumes, glm::dvec3 origin,
-                               std::span<const VolumeProbe> probes, unsigned threads) {
+                               std::span<const VolumeProbe> probes, unsigned threads,
+                               const runtime::EmitterLight& emitters) {
     std::vector<double> luminance(kLightPlaces * probes.size());
     const runtime::VolumeLight light = runtime::relight_volumes(
-        volumes, {}, {.terms = formats::TermSet::none, .threads = threads});
+        volumes, {}, {.terms = formats::TermSet::none, .emitters = emitters, .threads = threads});
     const runtime::LitVolumes lit = runtime::light_volumes(volumes, light);
     for (std::size_t i = 0; i < luminance.size(); ++i) {
         const VolumeProbe& probe = probes[i % probes.size()];

@@ -12,6 +12,7 @@
 #include "formats/opal/result.h"
 #include "formats/opal/volumes.h"
 #include "formats/scene.h"
+#include "runtime/emitter_light.h"
 
 namespace opaline::bake {
 
@@ -24,9 +25,10 @@ std::vector<double> march_probes(const formats::VolumesView& volumes, std::uint3
                                  unsigned threads);
 
 /// Luminance of the light that volumes send out by themselves, seen directly or scattered, along
-/// the same rays, in the same order.
+/// the same rays, in the same order. `emitters`: with their light; none: all, as they are.
 std::vector<double> march_glow(const formats::VolumesView& volumes, glm::dvec3 origin,
-                               std::span<const VolumeProbe> probes, unsigned threads);
+                               std::span<const VolumeProbe> probes, unsigned threads,
+                               const runtime::EmitterLight& emitters = {});
 
 /// Error of a finished file's volumes: luminance that they scatter, and let pass, along rays, by
 /// the runtime's march, against path tracing. Model and numbers err together. The noise of the
@@ -89,6 +91,13 @@ struct GlowErrorReport {
     std::uint32_t rays_checked = 0;  ///< 0: nothing was checked
     std::uint64_t events = 0;        ///< of all paths
 };
+
+/// What volumes scatter of the light of lamps: those emitters from `first` on. Surfaces reflect it
+/// on the side of the paths as often as it may be.
+formats::Result<GlowErrorReport> check_lamps(const formats::Scene& scene,
+                                             const formats::AssetView& asset, std::uint32_t first,
+                                             const VolumeCheckOptions& options,
+                                             const Context& context);
 
 /// The volumes of `asset`, baked from `scene`, through the rays of its check (check_volumes).
 /// Surfaces are black on both sides. The same bits for any number of threads. Errors: resource,
