@@ -166,6 +166,34 @@ INSTANTIATE_TEST_SUITE_P(Things, LampFurnace,
                                  kInside[static_cast<std::size_t>(furnace.param.inside)]);
                          });
 
+// Clusters, caustics and paths see the same room with a block of brass and a ball of glass.
+TEST(LitMediaReference, LightBesideMetalAndGlassIsThatOfPathTracing) {
+    formats::Primitive block = tests::make_cube(1, false),
+                       lamp = tests::make_quad({-0.5f, -0.5f, 0.98f}, {0, 1, 0}, {1, 0, 0});
+    for (glm::vec3& position : block.position)
+        position = 0.35f * position + glm::vec3(0.4f, 0.3f, -0.64f);
+    lamp.name = "node 'Lamp' > mesh 1";
+    formats::Scene scene = tests::make_scene({tests::make_cube(6, true), lamp, block,
+                                              tests::make_sphere(3, 0.35f, {-0.5f, -0.4f, -0.6f})});
+    scene.materials.resize(4);
+    for (std::uint32_t p = 0; p < 4; ++p) {
+        scene.primitives[p].material = scene.primitives[p].node = p;
+    }
+    scene.materials[0].base_color = {0.6f, 0.6f, 0.6f};
+    scene.materials[1].base_color = {0, 0, 0};
+    scene.materials[1].emission = {1, 1, 1};
+    scene.materials[2].base_color = {0.9f, 0.7f, 0.4f};
+    scene.materials[2].gloss.metallic = 1;
+    scene.materials[2].gloss.roughness = 0.3f;
+    formats::Medium& glass = scene.materials[3].medium.emplace();
+    glass.sigma_s = glass.sigma_a = {0, 0, 0};
+    glass.eta = 1.5f;
+    glass.roughness = 0.2f;
+    BakeOptions options = options_of(MultipleModel::walks);
+    options.effects.clear();
+    EXPECT_LT(error_of(tests::bake_scene(scene, options), "emitters"), 0.08);
+}
+
 // A lamp in a hollow ball, so thick that hardly any light crosses it unscattered: the outside
 // glows, and path tracing agrees.
 TEST(LitMediaReference, LampInAHollowBallGlowsOutside) {
