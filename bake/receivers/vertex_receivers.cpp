@@ -88,6 +88,17 @@ Clearance clearance_of(const Fans& fans, std::uint32_t point, const Primitive& p
     return clearest_direction(own);
 }
 
+// Whether triangles of another medium meet there.
+bool meets_other_medium(const Scene& scene, const Fans& fans, std::uint32_t point,
+                        std::uint32_t material) {
+    if (!scene.materials[material].medium) return false;
+    const auto begin = fans.primitive.begin() + fans.offset[point];
+    const auto end = fans.primitive.begin() + fans.offset[point + 1];
+    return std::any_of(begin, end, [&](const Primitive* p) {
+        return p->material != material && scene.materials[p->material].medium;
+    });
+}
+
 // Height of a point's triangles above its tangent plane [m].
 float fold_height(const Fans& fans, std::uint32_t point, glm::vec3 position, glm::vec3 normal) {
     float height = 0;
@@ -160,7 +171,8 @@ std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
             Receiver receiver{position, normal};
             if (const auto it = fans.point.find(weld_key(position)); it != fans.point.end()) {
                 Clearance c = clearance[it->second];
-                if (!(c.cosine > kLeastClearance) && scene.materials[primitive.material].medium) {
+                if (!(c.cosine > kLeastClearance) &&
+                    meets_other_medium(scene, fans, it->second, primitive.material)) {
                     c = clearance_of(fans, it->second, primitive);
                 }
                 const float bound = clearance_bound(position, fans.extent[it->second]);

@@ -19,10 +19,10 @@ namespace opaline::bake {
 ///    perceptron iteration; clearance: the smallest cosine between d and their normals;
 /// bound: clearance_bound at the vertex.
 /// Duplicated vertices therefore get identical origins, and no seam.
-/// Where no d is in front of all triangles, d of a medium's vertex is in front of those of its own
-/// primitive: another body lies against it. Where there is none either (a point whose triangles are folded over each other, as
-/// scans and decimation leave them), rays start along the shading normal above the fold, which
-/// would else be a black speck.
+/// Where no d is in front of all triangles and another medium's body lies against that of the
+/// vertex, d is in front of the triangles of its own primitive. Where there is none either (a point
+/// whose triangles are folded over each other, as scans and decimation leave them), rays start
+/// along the shading normal above the fold, which would else be a black speck.
 std::vector<Receiver> make_vertex_receivers(const formats::Scene& scene);
 
 /// Bound [m] on how far the computed intersection of a ray with a triangle may lie from the true

@@ -16,6 +16,8 @@
 namespace opaline::bake {
 namespace {
 
+constexpr double kFullPi = std::numbers::pi;
+
 formats::Scene lit_scene(formats::Volume volume, glm::vec3 lamp, float intensity) {
     formats::Scene scene = tests::scene_of(std::move(volume));
     formats::Light light;
@@ -81,7 +83,7 @@ TEST(LampsInVolumes, APointInThinSmokeGivesInverseSquaresAlongARay) {
                 static_cast<double>(grid.sample(glm::vec3(to_index * glm::dvec4(at, 1))));
             const double distance = glm::length(at - lamp);
             depth += kSigma * density * kStep;
-            sum += kSigma * kAlbedo * density / (4 * kPi) * kIntensity / (distance * distance) *
+            sum += kSigma * kAlbedo * density / (4 * kFullPi) * kIntensity / (distance * distance) *
                    std::exp(-depth - kSigma * distance) * kStep;
         }
         EXPECT_NEAR(smoke.see(from, direction), sum, 0.05 * sum) << aside;
@@ -97,7 +99,7 @@ TEST(LampsInVolumes, AllPowerOfALampInAWhiteBallLeavesIt) {
                                                                 static_cast<float>(kSigma), 1, 0),
                                              lamp, 1),
                                    Quality::draft, 2);
-        double leaves = 4 * kPi * std::exp(-kSigma);
+        double leaves = 4 * kFullPi * std::exp(-kSigma);
         for (int side = 0; side < 6; ++side) {
             glm::dvec3 axis(0), across(0);
             axis[side % 3] = side < 3 ? 1 : -1;
@@ -105,13 +107,13 @@ TEST(LampsInVolumes, AllPowerOfALampInAWhiteBallLeavesIt) {
             const glm::dvec3 along = glm::cross(axis, across);
             for (int i = 0; i < kRings * kTurns; ++i) {
                 const double b = kWide * (i / kTurns + 0.5) / kRings;
-                const double angle = 2 * kPi * (i % kTurns + 0.5) / kTurns;
+                const double angle = 2 * kFullPi * (i % kTurns + 0.5) / kTurns;
                 const glm::dvec3 off = b * (std::cos(angle) * across + std::sin(angle) * along);
-                leaves += 4 * kPi / 6 * 2 * kPi * b * (kWide / kRings) / kTurns *
+                leaves += 4 * kFullPi / 6 * 2 * kFullPi * b * (kWide / kRings) / kTurns *
                           smoke.see(off - 4.0 * axis, axis);
             }
         }
-        EXPECT_NEAR(leaves, 4 * kPi, 0.05 * 4 * kPi) << lamp.x;
+        EXPECT_NEAR(leaves, 4 * kFullPi, 0.05 * 4 * kFullPi) << lamp.x;
     }
 }
 
@@ -120,7 +122,7 @@ TEST(LampsInVolumes, SunsOfTheSceneLightThinSmokeEvenly) {
         tests::make_volume(tests::make_ball_grid(1, 0.25), 0.01f, 0.5f, 0), glm::vec3(0), 2);
     scene.lights[0].type = formats::Light::Type::directional;
     const SmokeWithLamps smoke(scene, Quality::draft, 2);
-    const double straight = 2 * 0.01 * 0.5 / (4 * kPi) * 2;  // b E / 4 pi over two metres
+    const double straight = 2 * 0.01 * 0.5 / (4 * kFullPi) * 2;  // b E / 4 pi over two metres
     EXPECT_NEAR(smoke.see({-3, 0, 0}, {1, 0, 0}), straight, 0.04 * straight);
 }
 
