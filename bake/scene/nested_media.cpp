@@ -192,6 +192,29 @@ void add_indirect(SceneFacts& facts) {
     }
 }
 
+// Whether some of the surface lies inside of other bodies of the same material: just outside of a
+// triangle is then inside of one. Looks at some triangles of each shell.
+bool overlaps_itself(const Surface& surface, double size) {
+    constexpr std::uint32_t kMostPoints = 256;
+    constexpr double kOutside = 1e-4;      // of the size: clear of rounding
+    constexpr std::uint32_t kFewest = 20;  // one of so many is inside: fewer are folds
+    std::uint32_t looked = 0, inside = 0;
+    for (const BodyShell& shell : surface.body.shell) {
+        const std::uint32_t step = std::max(1u, shell.count / kMostPoints);
+        for (std::uint32_t i = 0; i < shell.count; i += step) {
+            const BodyTriangle& t = surface.body.triangle[surface.body.order[shell.first + i]];
+            const auto corner = corners(surface.body, t);
+            const glm::dvec3 area = area_vector(surface.body, t);
+            const double length = glm::length(area);
+            if (!(length > 0)) continue;
+            ++looked;
+            const glm::dvec3 middle = (corner[0] + corner[1] + corner[2]) / 3.0;
+            inside += is_inside(surface.tree, middle + kOutside * size / length * area) ? 1 : 0;
+        }
+    }
+    return inside * kFewest > looked;
+}
+
 bool boxes_meet(const MaterialFacts& a, const MaterialFacts& b) {
     return glm::all(glm::lessThanEqual(a.low, b.high)) &&
            glm::all(glm::lessThanEqual(b.low, a.high));
@@ -224,6 +247,15 @@ void find_nested_media(const formats::Scene& scene, SceneFacts& facts) {
                 own.inner.push_back({inner, depth, *scene.materials[inner].medium});
             }
         }
+    }
+    constexpr std::uint32_t kMostTriangles = 200'000;  // of a material that is looked at so closely
+    for (std::uint32_t m = 0; m < count; ++m) {
+        MaterialFacts& own = facts.material[m];
+        if (!is_body(m) || own.triangles > kMostTriangles) continue;
+        const Surface& surface = surface_of(m);
+        own.overlaps =
+            surface.body.shell.size() > 1 &&
+            overlaps_itself(surface, static_cast<double>(glm::distance(own.low, own.high)));
     }
     add_indirect(facts);
     for (std::uint32_t m = 0; m < count; ++m) {

@@ -88,7 +88,7 @@ bool expects_walks(const formats::Medium& medium, const MaterialFacts& body, boo
     const auto asked = static_cast<MultipleModel>(whole(knobs, kMultipleModel));
     return asked == MultipleModel::automatic
                ? body.varies || (!is_fixed(medium) &&
-                                 (layered || is_too_peaked(medium, knobs) ||
+                                 (layered || body.overlaps || is_too_peaked(medium, knobs) ||
                                   expected_error(medium, body) > allowed_model_error(knobs)))
                : asked != MultipleModel::dipole;
 }
@@ -116,8 +116,8 @@ ModelChoice choose_model(const EffectInputs& inputs, const MediumProfile& profil
         return choice;
     }
     const bool is_measured = is_doubted || (may_walk && measures_models(inputs.knobs));
-    if (may_walk &&
-        (layered || (choice.all_orders && is_too_peaked(inputs.medium(), inputs.knobs)))) {
+    if (may_walk && (layered || body.overlaps ||
+                     (choice.all_orders && is_too_peaked(inputs.medium(), inputs.knobs)))) {
         choice.model = MultipleModel::walks;
         return choice;
     }
@@ -169,6 +169,8 @@ PlanEntry decide_model(const PlanInput& input) {
         entry.reason = "dipole: the medium names its profile";
     } else if (layered) {
         walk("it contains other media");
+    } else if (input.subject.overlaps && effect.on) {
+        walk("bodies of it overlap, whose surfaces the dipole counts twice");
     } else if (!effect.on) {
         entry.reason = "dipole: no light that scatters many times is simulated";
     } else if (is_too_peaked(medium, input.knobs)) {

@@ -4,6 +4,7 @@
 
 #include "bake/scene/inspect_scene.h"
 #include "tests/bake/walks/nested_bodies.h"
+#include "tests/support/touching_bodies.h"
 
 namespace opaline::tests {
 namespace {
@@ -65,6 +66,21 @@ TEST(NestedMedia, BodiesThatTouchHaveEachOtherAtNoDepthAndAllThatTheOthersTouch)
     EXPECT_EQ(facts[0].inner[0].material, 1u);
     EXPECT_EQ(facts[0].inner[1].material, 2u);
     EXPECT_TRUE(facts[3].inner.empty()) << "a gap";
+}
+
+// The dipole counts faces twice that lie on one another, and light on ones that lie in a body.
+TEST(NestedMedia, BodiesOfOneMediumThatOverlapAreFoundAndShellsOfHollowOnesAreNone) {
+    const auto overlap = [](const Primitive& a, const Primitive& b) {
+        Scene scene = make_nested_scene({{a, coat()}, {b, coat()}});
+        scene.primitives[1].material = 0;
+        return bake::inspect_scene(scene).material[0].overlaps;
+    };
+    const Primitive box = make_box({0, 0, 0}, {1, 1, 1}, 4);
+    EXPECT_TRUE(overlap(box, make_box({0.5f, 0, 0}, {1.5f, 1, 1}, 4))) << "faces in one plane";
+    EXPECT_TRUE(overlap(make_sphere(3), make_sphere(3, 1, {1, 0.5f, 0})));
+    EXPECT_FALSE(overlap(box, make_box({1, 0, 0}, {2, 1, 1}, 4))) << "they touch";
+    EXPECT_FALSE(overlap(box, make_box({1.1f, 0, 0}, {2, 1, 1}, 4)));
+    EXPECT_FALSE(overlap(make_sphere(3), turned_inside_out(make_sphere(3, 0.6f))));
 }
 
 TEST(NestedMedia, ABodyInACavityOfAnotherIsNotInIt) {
