@@ -217,8 +217,8 @@ struct CloudLayer {
     double visibility = 0;           ///< of the air: distance [m] where contrast is 5 %; 0: clear
     double droplets = 3e8;           ///< N0, per volume [1/m^3]
     double effective_radius = 7e-6;  ///< <r^3> / <r^2> [m]
-    double gamma = 2;                ///< of the modified gamma distribution (bake/mie/droplets.h)
-    bool ice = false;                ///< spheres of ice instead of water
+    double gamma = 2;    ///< of the modified gamma distribution (bake/physics/mie/droplets.h)
+    bool ice = false;    ///< spheres of ice instead of water
     bool paper = false;  ///< fidelity "paper": [Bouthors2006] as printed (formats/media/README.md)
     std::optional<double> peak_angle;  ///< theta_f [rad]; nothing: where the phase function bends
     std::uint32_t ground_columns = 1, ground_rows = 1;       ///< over `size`, rows toward +z

@@ -5,7 +5,6 @@
 #include <optional>
 #include <utility>
 
-#include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
@@ -16,6 +15,7 @@
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
+#include "bake/pipeline/calibration/rates_cache.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"

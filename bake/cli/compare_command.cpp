@@ -1,4 +1,4 @@
-#include "bake/compare/compare_files.h"
+#include "bake/lab/compare/compare_files.h"
 
 #include <fmt/core.h>
 

@@ -9,7 +9,7 @@
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
-#include "bake/mie/mie_series.h"
+#include "bake/physics/mie/mie_series.h"
 
 namespace opaline::cli {
 namespace {

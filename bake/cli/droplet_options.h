@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "bake/cli/command.h"
-#include "bake/mie/droplet_optics.h"
-#include "bake/mie/droplets.h"
-#include "bake/mie/refractive_index.h"
+#include "bake/physics/mie/droplet_optics.h"
+#include "bake/physics/mie/droplets.h"
+#include "bake/physics/mie/refractive_index.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {

@@ -7,8 +7,8 @@
 #include "bake/cli/command.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/usage_errors.h"
-#include "bake/environment/builtin_environment.h"
-#include "bake/example/example_scenes.h"
+#include "bake/lab/example/example_scenes.h"
+#include "bake/lights/builtin_environment.h"
 #include "formats/image/exr.h"
 
 namespace opaline::cli {

@@ -22,7 +22,7 @@
 #include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/result.h"
 #include "runtime/web/web_page.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "bake/cli/messages.h"
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"
 

@@ -12,7 +12,7 @@
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
 #include "bake/cli/usage_errors.h"
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "bake/scene/flatten_slabs.h"
 #include "formats/media/apply_media.h"
 #include "formats/media/load_clouds.h"

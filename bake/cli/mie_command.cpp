@@ -14,8 +14,8 @@
 #include "bake/cli/json_output.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
-#include "bake/mie/forward_peak.h"
-#include "bake/mie/sphere_scattering.h"
+#include "bake/physics/mie/forward_peak.h"
+#include "bake/physics/mie/sphere_scattering.h"
 
 namespace opaline::cli {
 namespace {

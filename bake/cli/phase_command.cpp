@@ -15,8 +15,8 @@
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
 #include "bake/cli/phase_subject.h"
-#include "bake/scattering/phase_maps.h"
-#include "bake/scattering/phase_series.h"
+#include "bake/physics/phase_maps.h"
+#include "bake/physics/phase_series.h"
 #include "formats/media/limits.h"
 
 namespace opaline::cli {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "bake/cli/messages.h"
-#include "bake/mie/angular_table.h"
-#include "bake/scattering/phase.h"
+#include "bake/physics/mie/angular_table.h"
+#include "bake/physics/phase.h"
 #include "formats/media/read_phase_table.h"
 #include "formats/opal/atomic_file.h"
 

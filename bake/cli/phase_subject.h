@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/cli/droplet_options.h"
-#include "bake/scattering/phase_series.h"
+#include "bake/physics/phase_series.h"
 #include "formats/opal/result.h"
 
 namespace opaline::cli {

@@ -4,13 +4,13 @@
 #include <memory>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/report.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
+#include "bake/pipeline/calibration/rates_cache.h"
 #include "bake/pipeline/plan_scene.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"

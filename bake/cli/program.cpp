@@ -16,7 +16,7 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/usage_errors.h"
-#include "bake/transport/embree_scene.h"
+#include "bake/trace/embree_scene.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::cli {

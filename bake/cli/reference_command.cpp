@@ -16,7 +16,7 @@
 #include "bake/cli/reference_options.h"
 #include "bake/cli/scene_options.h"
 #include "bake/cli/write_picture.h"
-#include "bake/path_images/path_image.h"
+#include "bake/lab/path_images/path_image.h"
 #include "bake/reference/path_filter.h"
 #include "bake/reference/reference_receivers.h"
 #include "formats/image/exr.h"

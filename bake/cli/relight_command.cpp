@@ -10,7 +10,7 @@
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"
 #include "bake/cli/picture_options.h"
-#include "bake/compare/relight_table.h"
+#include "bake/lab/compare/relight_table.h"
 #include "formats/opal/terms.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/node_radiance.h"

@@ -12,8 +12,8 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/effects/effects.h"
+#include "bake/effects/volumes/plan_volumes.h"
 #include "bake/pipeline/predict_memory.h"
-#include "bake/volumes/plan_volumes.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {

@@ -10,11 +10,11 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/slab_views.h"
-#include "bake/scattering/phase_series.h"
-#include "bake/slab/column_model.h"
-#include "bake/slab/radiance_table.h"
-#include "bake/slab/slab_walk.h"
-#include "bake/slab/solve_slab.h"
+#include "bake/physics/phase_series.h"
+#include "bake/physics/slab/column_model.h"
+#include "bake/physics/slab/radiance_table.h"
+#include "bake/physics/slab/slab_walk.h"
+#include "bake/physics/slab/solve_slab.h"
 #include "formats/media/read_phase_table.h"
 
 namespace opaline::cli {

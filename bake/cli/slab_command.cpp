@@ -12,7 +12,7 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/slab_answer.h"
-#include "bake/slab/solve_slab.h"
+#include "bake/physics/slab/solve_slab.h"
 #include "formats/media/limits.h"
 
 namespace opaline::cli {

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "bake/mie/forward_peak.h"
-#include "bake/slab/low_orders.h"
-#include "bake/slab/solve_radiance.h"
+#include "bake/physics/mie/forward_peak.h"
+#include "bake/physics/slab/low_orders.h"
+#include "bake/physics/slab/solve_radiance.h"
 
 namespace opaline::cli {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bake/mie/angular_table.h"
-#include "bake/slab/radiance_table.h"
-#include "bake/slab/slab_medium.h"
+#include "bake/physics/mie/angular_table.h"
+#include "bake/physics/slab/radiance_table.h"
+#include "bake/physics/slab/slab_medium.h"
 #include "formats/scene.h"
 
 namespace opaline::cli {

@@ -8,10 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/sweep/report_page.h"
-#include "bake/accuracy/sweep/tables.h"
 #include "bake/base/stage_log.h"
-#include "bake/calibration/rates_cache.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
@@ -21,6 +18,9 @@
 #include "bake/cli/progress.h"
 #include "bake/cli/scene_options.h"
 #include "bake/effects/effects.h"
+#include "bake/lab/sweep/report_page.h"
+#include "bake/lab/sweep/tables.h"
+#include "bake/pipeline/calibration/rates_cache.h"
 #include "formats/opal/atomic_file.h"
 
 namespace opaline::cli {

@@ -3,9 +3,12 @@
 #include <array>
 
 #include "bake/effects/direct/direct.h"
+#include "bake/effects/emitters/emitter_knobs.h"
 #include "bake/effects/gloss/gloss.h"
 #include "bake/effects/incident/incident.h"
 #include "bake/effects/interreflection/interreflection.h"
+#include "bake/effects/layers/layer_knobs.h"
+#include "bake/effects/layers/plan_layers.h"
 #include "bake/effects/local/local.h"
 #include "bake/effects/multiple/multiple.h"
 #include "bake/effects/multiple/rule_spread.h"
@@ -13,11 +16,8 @@
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"
 #include "bake/effects/transmission/transmission.h"
-#include "bake/emitters/emitter_knobs.h"
-#include "bake/layers/layer_knobs.h"
-#include "bake/layers/plan_layers.h"
-#include "bake/volumes/volume_effects.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_effects.h"
+#include "bake/effects/volumes/volume_knobs.h"
 
 namespace opaline::bake {
 namespace {

@@ -13,7 +13,7 @@
 #include "bake/exchange/series_end.h"
 #include "bake/exchange/solve_bounces.h"
 #include "bake/plan/effect.h"
-#include "bake/transport/coded_rows.h"
+#include "bake/trace/coded_rows.h"
 
 namespace opaline::bake {
 

@@ -7,9 +7,9 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
-#include "bake/path_differentials/visible_normal.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/path_differentials/visible_normal.h"
 #include "bake/receivers/receiver.h"
-#include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {

@@ -15,8 +15,8 @@
 #include "bake/exchange/bounce_tree.h"
 #include "bake/exchange/scatterers.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/packet_lane.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/packet_lane.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -10,7 +10,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/exchange/surface_side.h"
-#include "bake/transport/coded_rows.h"
+#include "bake/trace/coded_rows.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "bake/exchange/bounce_light.h"
-#include "bake/transport/bodies_at.h"
+#include "bake/trace/bodies_at.h"
 
 namespace opaline::bake {
 namespace {

@@ -6,12 +6,12 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/exchange/bounce_gather.h"
+#include "bake/exchange/lamps/glow_light.h"
 #include "bake/exchange/medium_answer.h"
 #include "bake/exchange/scatterers.h"
 #include "bake/exchange/solve_bounces.h"
-#include "bake/lamps/glow_light.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/transport/touching_triangles.h"
+#include "bake/physics/fresnel.h"
+#include "bake/trace/touching_triangles.h"
 
 namespace opaline::bake {
 namespace {

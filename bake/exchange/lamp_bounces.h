@@ -7,9 +7,9 @@
 
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/bounce_rays.h"
+#include "bake/exchange/lamps/receiver_light.h"
 #include "bake/exchange/particle_cells.h"
-#include "bake/lamps/receiver_light.h"
-#include "bake/transport/coded_rows.h"
+#include "bake/trace/coded_rows.h"
 
 namespace opaline::bake {
 

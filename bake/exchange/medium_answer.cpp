@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/physics/fresnel.h"
 #include "bake/plan/medium_exitance.h"
 #include "bake/receivers/surface_patches.h"
-#include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {

@@ -8,7 +8,7 @@
 #include "bake/exchange/bounce_tree.h"
 #include "bake/exchange/scatterers.h"
 #include "bake/plan/effect.h"
-#include "bake/transport/coded_rows.h"
+#include "bake/trace/coded_rows.h"
 
 namespace opaline::bake {
 

@@ -9,7 +9,7 @@
 #include "bake/exchange/bounce_rays.h"
 #include "bake/exchange/bounce_tree.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

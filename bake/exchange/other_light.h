@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bake/exchange/true_bounces.h"
+#include "bake/lights/luminance.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/effect.h"
-#include "bake/truth/luminance.h"
 
 namespace opaline::bake {
 

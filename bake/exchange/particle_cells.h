@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/exchange/bounce_tree.h"
-#include "bake/lamps/surface_elements.h"
+#include "bake/exchange/lamps/surface_elements.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

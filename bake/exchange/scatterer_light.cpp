@@ -7,7 +7,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/plan/medium_exitance.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 

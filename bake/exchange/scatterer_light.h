@@ -6,7 +6,7 @@
 
 #include "bake/exchange/exchange_points.h"
 #include "bake/exchange/medium_answer.h"
-#include "bake/transport/coded_rows.h"
+#include "bake/trace/coded_rows.h"
 
 namespace opaline::bake {
 

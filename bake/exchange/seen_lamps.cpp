@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "bake/base/rng.h"
+#include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/surface_side.h"
-#include "bake/lamps/onward_ray.h"
 #include "bake/scene/emission.h"
 #include "bake/scene/texture_footprint.h"
 

@@ -7,9 +7,9 @@
 
 #include "bake/base/context.h"
 #include "bake/exchange/bounce_light.h"
-#include "bake/transport/coded_rows.h"
-#include "bake/transport/density/attenuation.h"
-#include "bake/transport/density/density_space.h"
+#include "bake/trace/coded_rows.h"
+#include "bake/trace/density/attenuation.h"
+#include "bake/trace/density/density_space.h"
 
 namespace opaline::bake {
 

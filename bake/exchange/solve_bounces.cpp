@@ -9,7 +9,7 @@
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/bounce_rays.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
 namespace {

@@ -10,7 +10,7 @@
 #include "bake/exchange/bounce_rays.h"
 #include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/transport/packet_lane.h"
+#include "bake/trace/packet_lane.h"
 
 namespace opaline::bake {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/exchange/bounce_light.h"
-#include "bake/truth/true_irradiance.h"
+#include "bake/lights/true_irradiance.h"
 
 namespace opaline::bake {
 

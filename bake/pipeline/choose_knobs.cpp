@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "bake/accuracy/pilot/refinement.h"
+#include "bake/check/pilot/refinement.h"
 #include "bake/pipeline/unmet_requests.h"
 
 namespace opaline::bake {

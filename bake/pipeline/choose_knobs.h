@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "bake/accuracy/pilot/pilot.h"
 #include "bake/base/stage_log.h"
+#include "bake/check/pilot/pilot.h"
 #include "formats/opal/result.h"
 
 namespace opaline::bake {

@@ -6,16 +6,16 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/layers/layer_error.h"
-#include "bake/layers/layer_work.h"
-#include "bake/layers/plan_layers.h"
+#include "bake/effects/layers/layer_error.h"
+#include "bake/effects/layers/layer_work.h"
+#include "bake/effects/layers/plan_layers.h"
+#include "bake/effects/rows/medium_rows.h"
+#include "bake/effects/rows/subject_states.h"
 #include "bake/pipeline/costed_bake.h"
 #include "bake/pipeline/emitter_stages.h"
 #include "bake/pipeline/filtered_textures.h"
 #include "bake/pipeline/predict_memory.h"
 #include "bake/pipeline/volume_costs.h"
-#include "bake/rows/medium_rows.h"
-#include "bake/rows/subject_states.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/openness.h"
 #include "formats/opal/receiver_errors.h"

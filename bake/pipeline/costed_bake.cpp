@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "bake/rows/subject_states.h"
+#include "bake/effects/rows/subject_states.h"
 
 namespace opaline::bake {
 namespace {

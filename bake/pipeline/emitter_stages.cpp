@@ -8,18 +8,18 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/check_lit_media.h"
-#include "bake/accuracy/error_warnings.h"
-#include "bake/emitters/bake_emitters.h"
-#include "bake/emitters/emitter_knobs.h"
-#include "bake/emitters/lit_media.h"
+#include "bake/check/check_lit_media.h"
+#include "bake/check/error_warnings.h"
+#include "bake/effects/emitters/bake_emitters.h"
+#include "bake/effects/emitters/emitter_knobs.h"
+#include "bake/effects/emitters/lit_media.h"
+#include "bake/effects/rows/medium_rows.h"
+#include "bake/effects/rows/subject_states.h"
+#include "bake/effects/volumes/volume_effects.h"
+#include "bake/effects/volumes/volume_work.h"
 #include "bake/pipeline/shared_light.h"
 #include "bake/plan/bake_plan.h"
 #include "bake/plan/stage_work.h"
-#include "bake/rows/medium_rows.h"
-#include "bake/rows/subject_states.h"
-#include "bake/volumes/volume_effects.h"
-#include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 namespace {

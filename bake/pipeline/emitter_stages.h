@@ -4,12 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "bake/effects/rows/subject_states.h"
 #include "bake/exchange/bounce_light.h"
-#include "bake/lamps/lamps.h"
+#include "bake/exchange/lamps/lamps.h"
 #include "bake/pipeline/costed_bake.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/plan/bake_inputs.h"
-#include "bake/rows/subject_states.h"
 
 namespace opaline::bake {
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <utility>
 
-#include "bake/accuracy/error_warnings.h"
 #include "bake/base/interrupted.h"
-#include "bake/layers/plan_layers.h"
-#include "bake/mie/droplets.h"
+#include "bake/check/error_warnings.h"
+#include "bake/effects/layers/plan_layers.h"
+#include "bake/physics/mie/droplets.h"
 
 namespace opaline::bake {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "bake/layers/bake_layers.h"
+#include "bake/effects/layers/bake_layers.h"
 #include "bake/pipeline/pipeline.h"
 
 namespace opaline::bake {

@@ -6,10 +6,14 @@
 #include <string>
 #include <utility>
 
-#include "bake/accuracy/error_warnings.h"
-#include "bake/accuracy/measure_error.h"
 #include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/check/error_warnings.h"
+#include "bake/check/measure_error.h"
+#include "bake/effects/rows/gather_rows.h"
+#include "bake/effects/volumes/place_nodes.h"
+#include "bake/effects/volumes/plan_volumes.h"
+#include "bake/effects/volumes/volume_effects.h"
 #include "bake/encode/pack_asset.h"
 #include "bake/pipeline/emitter_stages.h"
 #include "bake/pipeline/filtered_textures.h"
@@ -21,15 +25,11 @@
 #include "bake/pipeline/volume_stages.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/rows/gather_rows.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/orient_bodies.h"
-#include "bake/transport/hidden_receivers.h"
-#include "bake/transport/stand_ins.h"
-#include "bake/transport/touching_triangles.h"
-#include "bake/volumes/place_nodes.h"
-#include "bake/volumes/plan_volumes.h"
-#include "bake/volumes/volume_effects.h"
+#include "bake/trace/hidden_receivers.h"
+#include "bake/trace/stand_ins.h"
+#include "bake/trace/touching_triangles.h"
 
 namespace opaline::bake {
 namespace {

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
-#include "bake/accuracy/check_model.h"
-#include "bake/accuracy/measure_error.h"
-#include "bake/accuracy/volumes/volume_error.h"
-#include "bake/layers/layer_error.h"
+#include "bake/check/check_model.h"
+#include "bake/check/measure_error.h"
+#include "bake/check/volumes/volume_error.h"
+#include "bake/effects/layers/layer_error.h"
 #include "bake/pipeline/choose_knobs.h"
 #include "formats/opal/asset.h"
 

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "bake/emitters/plan_emitters.h"
-#include "bake/layers/plan_layers.h"
+#include "bake/effects/emitters/plan_emitters.h"
+#include "bake/effects/layers/plan_layers.h"
 #include "bake/scene/inspect_scene.h"
 
 namespace opaline::bake {

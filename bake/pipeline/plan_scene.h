@@ -2,10 +2,10 @@
 
 #include <vector>
 
-#include "bake/lamps/lamps.h"
-#include "bake/layers/bake_layers.h"
+#include "bake/effects/layers/bake_layers.h"
+#include "bake/effects/volumes/plan_volumes.h"
+#include "bake/exchange/lamps/lamps.h"
 #include "bake/plan/effect.h"
-#include "bake/volumes/plan_volumes.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

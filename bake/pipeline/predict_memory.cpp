@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "bake/layers/layer_work.h"
+#include "bake/effects/layers/layer_work.h"
+#include "bake/effects/volumes/volume_parts.h"
+#include "bake/effects/volumes/volume_work.h"
 #include "bake/pipeline/cost_model.h"
-#include "bake/volumes/volume_parts.h"
-#include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 namespace {

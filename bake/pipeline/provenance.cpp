@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bake/pipeline/pipeline.h"
-#include "bake/transport/embree_scene.h"
+#include "bake/trace/embree_scene.h"
 
 namespace opaline::bake {
 

@@ -3,10 +3,10 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
-#include "bake/accuracy/check_model.h"
-#include "bake/accuracy/measure_error.h"
-#include "bake/accuracy/volumes/volume_error.h"
-#include "bake/layers/layer_error.h"
+#include "bake/check/check_model.h"
+#include "bake/check/measure_error.h"
+#include "bake/check/volumes/volume_error.h"
+#include "bake/effects/layers/layer_error.h"
 #include "bake/plan/bake_plan.h"
 #include "formats/scene.h"
 

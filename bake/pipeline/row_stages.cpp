@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
+#include "bake/effects/rows/shared_batches.h"
 #include "bake/encode/row_sink.h"
-#include "bake/rows/shared_batches.h"
-#include "bake/transport/bake_openness.h"
-#include "bake/transport/direction_set.h"
+#include "bake/trace/bake_openness.h"
+#include "bake/trace/direction_set.h"
 
 namespace opaline::bake {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "bake/base/stage_log.h"
+#include "bake/effects/rows/gather_rows.h"
+#include "bake/effects/rows/subject_states.h"
 #include "bake/plan/bake_inputs.h"
-#include "bake/rows/gather_rows.h"
-#include "bake/rows/subject_states.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {

@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "bake/accuracy/error_warnings.h"
+#include "bake/check/error_warnings.h"
+#include "bake/effects/rows/medium_rows.h"
 #include "bake/exchange/exchange_points.h"
-#include "bake/rows/medium_rows.h"
 
 namespace opaline::bake {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "bake/base/stage_log.h"
+#include "bake/effects/rows/subject_states.h"
 #include "bake/exchange/other_light.h"
-#include "bake/rows/subject_states.h"
 
 namespace opaline::bake {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "bake/accuracy/error_warnings.h"
+#include "bake/check/error_warnings.h"
 
 #include "bake/scene/emission.h"
 

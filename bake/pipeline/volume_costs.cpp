@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
-#include "bake/accuracy/pilot/pilot.h"
+#include "bake/check/pilot/pilot.h"
+#include "bake/effects/volumes/lamp_walks.h"
+#include "bake/effects/volumes/volume_effects.h"
+#include "bake/effects/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_parts.h"
+#include "bake/lights/draw_receivers.h"
 #include "bake/pipeline/volume_stages.h"
-#include "bake/truth/draw_receivers.h"
-#include "bake/volumes/lamp_walks.h"
-#include "bake/volumes/volume_effects.h"
-#include "bake/volumes/volume_knobs.h"
-#include "bake/volumes/volume_parts.h"
 
 namespace opaline::bake {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "bake/effects/volumes/volume_work.h"
 #include "bake/pipeline/costed_bake.h"
-#include "bake/volumes/volume_work.h"
 
 namespace opaline::bake {
 

@@ -6,15 +6,15 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/error_warnings.h"
-#include "bake/accuracy/volumes/volume_error.h"
 #include "bake/base/interrupted.h"
-#include "bake/transport/density/density_space.h"
-#include "bake/volumes/bake_glow.h"
-#include "bake/volumes/lamp_walks.h"
-#include "bake/volumes/place_nodes.h"
-#include "bake/volumes/volume_knobs.h"
-#include "bake/volumes/volume_work.h"
+#include "bake/check/error_warnings.h"
+#include "bake/check/volumes/volume_error.h"
+#include "bake/effects/volumes/bake_glow.h"
+#include "bake/effects/volumes/lamp_walks.h"
+#include "bake/effects/volumes/place_nodes.h"
+#include "bake/effects/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_work.h"
+#include "bake/trace/density/density_space.h"
 
 namespace opaline::bake {
 namespace {

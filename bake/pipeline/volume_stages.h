@@ -4,17 +4,17 @@
 #include <span>
 #include <vector>
 
-#include "bake/accuracy/volumes/volume_error.h"
+#include "bake/check/volumes/volume_error.h"
+#include "bake/effects/volumes/bake_volumes.h"
+#include "bake/effects/volumes/plan_volumes.h"
+#include "bake/effects/volumes/sent_light.h"
+#include "bake/effects/volumes/volume_parts.h"
+#include "bake/effects/volumes/volume_work.h"
 #include "bake/exchange/bounce_light.h"
-#include "bake/lamps/lamps.h"
+#include "bake/exchange/lamps/lamps.h"
 #include "bake/pipeline/pipeline.h"
 #include "bake/plan/knobs.h"
-#include "bake/transport/ray_scene.h"
-#include "bake/volumes/bake_volumes.h"
-#include "bake/volumes/plan_volumes.h"
-#include "bake/volumes/sent_light.h"
-#include "bake/volumes/volume_parts.h"
-#include "bake/volumes/volume_work.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/opal/result.h"
 
 namespace opaline::bake {

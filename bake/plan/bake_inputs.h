@@ -5,12 +5,12 @@
 #include "bake/receivers/receiver.h"
 #include "bake/scene/scene_facts.h"
 #include "bake/scene/texture_pyramid.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
-struct DensitySpace;  // transport/density/density_space.h
+struct DensitySpace;  // trace/density/density_space.h
 struct OtherLight;    // exchange/other_light.h
 struct EffectTable;
 

@@ -10,14 +10,14 @@
 #include <vector>
 
 #include "bake/base/context.h"
+#include "bake/lights/luminance.h"
+#include "bake/lights/test_lights.h"
 #include "bake/plan/bake_inputs.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/knob.h"
 #include "bake/plan/plan_input.h"
 #include "bake/plan/row_layout.h"
 #include "bake/plan/stage_work.h"
-#include "bake/truth/luminance.h"
-#include "bake/truth/test_lights.h"
 #include "formats/opal/result.h"
 #include "formats/opal/terms.h"
 

@@ -66,7 +66,7 @@ struct KnobSpec {
     /// What a pilot for a target error starts from; null: the value of preview.
     double (*for_target)(double error) = nullptr;
 
-    // The sweep (accuracy/sweep).
+    // The sweep (check/sweep).
     std::string_view label{};  ///< of a point, with %g for the value
     Numbers ladder{};          ///< values to try one by one
     /// Values where all knobs change together, -2 to 2 steps from the middle; and of the settings

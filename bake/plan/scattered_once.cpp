@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "bake/physics/dipole.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/half_space_once.h"
+#include "bake/physics/phase_series.h"
 #include "bake/plan/plan_input.h"
-#include "bake/scattering/dipole.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_once.h"
-#include "bake/scattering/phase_series.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

@@ -1,7 +1,7 @@
 #include "bake/plan/stage_work.h"
 
-#include "bake/transport/bake_openness.h"
-#include "bake/truth/test_lights.h"
+#include "bake/lights/test_lights.h"
+#include "bake/trace/bake_openness.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

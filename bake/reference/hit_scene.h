@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "bake/transport/embree_scene.h"
+#include "bake/trace/embree_scene.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 

@@ -9,7 +9,8 @@
 namespace opaline::bake {
 namespace {
 
-constexpr float kLeastCosine = 1e-4f;  // where it divides: path_differentials/bounded_change.h
+constexpr float kLeastCosine =
+    1e-4f;  // where it divides: physics/path_differentials/bounded_change.h
 
 float square(float x) {
     return x * x;

@@ -78,9 +78,9 @@ struct TextureFiltering {
 
 /// What is similar to a path: how its vertices move with its random numbers, up to the surface that
 /// it has reached. It follows the path and changes nothing of it. A fast form of PathDifferential
-/// (bake/path_differentials): single precision, four columns side by side, steps multiplied into
-/// them, second moments alone, at most six columns. Each scattering adds a cell of the area step^2
-/// / density around the direction that was drawn; older columns turn with the normal.
+/// (bake/physics/path_differentials): single precision, four columns side by side, steps multiplied
+/// into them, second moments alone, at most six columns. Each scattering adds a cell of the area
+/// step^2 / density around the direction that was drawn; older columns turn with the normal.
 class PathFilter {
   public:
     /// `dD_dx`, `dD_dy`: change of the unit direction over a pixel.

@@ -9,7 +9,7 @@
 #include "bake/base/rng.h"
 #include "bake/receivers/used_vertices.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/touching_triangles.h"
+#include "bake/trace/touching_triangles.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/rgb.h"
 

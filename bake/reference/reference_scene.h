@@ -7,7 +7,7 @@
 #include "bake/reference/lamp_sampler.h"
 #include "bake/reference/volume_flight.h"
 #include "bake/reference/volume_space.h"
-#include "bake/transport/clearance_grid.h"
+#include "bake/trace/clearance_grid.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 

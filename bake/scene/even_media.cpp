@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bake/scattering/scattering_color.h"
+#include "bake/physics/scattering_color.h"
 #include "bake/scene/medium_field.h"
 
 namespace opaline::bake {

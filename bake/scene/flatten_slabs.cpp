@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string>
 
-#include "bake/scattering/fresnel.h"
-#include "bake/slab/even_light.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/slab/even_light.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

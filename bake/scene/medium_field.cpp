@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "bake/base/parallel_indices.h"
-#include "bake/scattering/scattering_color.h"
+#include "bake/physics/scattering_color.h"
 #include "bake/scene/marble.h"
 #include "bake/scene/nearest_surface.h"
 #include "bake/scene/texture_footprint.h"

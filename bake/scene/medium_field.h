@@ -25,7 +25,7 @@ class MediumField {
     /// The scattering colour there over that of the stated medium, each band in [0, 1].
     glm::vec3 color(glm::vec3 position) const;
     /// Of one scattering event there, each band in [0, 1]: albedo_of_color of the local scattering
-    /// colour (bake/scattering/scattering_color.h). Where that is the stated one, so is this.
+    /// colour (bake/physics/scattering_color.h). Where that is the stated one, so is this.
     glm::vec3 albedo(glm::vec3 position) const;
     /// Both coefficients over the stated ones, in (0, 1]. 1 everywhere unless has_density().
     float density(glm::vec3 position) const { return has_density_ ? grid(position).w : 1.0f; }

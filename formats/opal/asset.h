@@ -31,7 +31,7 @@ inline constexpr std::uint32_t kOpalVersion = 1;
 enum class Pairing : std::uint32_t { light_carries_solid_angle = 1 };
 
 /// Relative indices of refraction of a translucent primitive; outside them the exact hemispherical
-/// moments and the fits that bakers use lose their digits (bake/scattering/README.md, "Fresnel").
+/// moments and the fits that bakers use lose their digits (bake/physics/README.md, "Fresnel").
 inline constexpr float kMinEta = 1.0f / 3.0f, kMaxEta = 3.0f;
 
 /// What row values mean and how a receiver is shaded from them.

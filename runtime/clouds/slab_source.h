@@ -10,7 +10,8 @@
 namespace opaline::runtime {
 
 // Light of irradiance E, on a plane facing it, that a slab scatters once toward an eye: radiance E
-// p(cos) [1/sr] times these factors (bake/slab/README.md, "Once and twice"). They are divided by 1
+// p(cos) [1/sr] times these factors (bake/physics/slab/README.md, "Once and twice"). They are
+// divided by 1
 // - exp(-depth / view), the share of the view that the slab takes, so that they are those of a
 // source: bounded by 1, finite for every depth in [0, inf] and for cosines in [1e-3, 1].
 

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/pilot/pilot_rows.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/check/pilot/pilot_rows.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"

@@ -7,9 +7,9 @@
 #include <cstdio>
 #include <vector>
 
-#include "bake/accuracy/check_model.h"
-#include "bake/accuracy/model_pairs.h"
-#include "bake/accuracy/model_truth.h"
+#include "bake/check/check_model.h"
+#include "bake/check/model_pairs.h"
+#include "bake/check/model_truth.h"
 #include "bake/pipeline/pipeline.h"
 #include "runtime/light_vector.h"
 #include "tests/bench/bench.h"

@@ -17,18 +17,18 @@
 
 #include <tbb/parallel_for.h>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/effects/effects.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
-#include "bake/environment/builtin_environment.h"
-#include "bake/example/example_scenes.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/scatterers.h"
+#include "bake/lab/example/example_scenes.h"
+#include "bake/lights/builtin_environment.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/inspect_scene.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/gltf/import_gltf.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"

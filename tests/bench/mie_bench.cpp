@@ -5,9 +5,9 @@
 #include <complex>
 #include <cstddef>
 
-#include "bake/mie/droplet_optics.h"
-#include "bake/mie/refractive_index.h"
-#include "bake/mie/sphere_scattering.h"
+#include "bake/physics/mie/droplet_optics.h"
+#include "bake/physics/mie/refractive_index.h"
+#include "bake/physics/mie/sphere_scattering.h"
 
 namespace {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "bake/base/ordered_parallel.h"
-#include "bake/lamps/onward_ray.h"
-#include "bake/lamps/trace_particles.h"
+#include "bake/exchange/lamps/onward_ray.h"
+#include "bake/exchange/lamps/trace_particles.h"
 #include "formats/image/png.h"
 #include "formats/image/srgb.h"
 #include "tests/bake/lamps/lamp_scenes.h"

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/support/media.h"
 

@@ -10,15 +10,15 @@
 #include <utility>
 #include <vector>
 
-#include "bake/mie/droplet_optics.h"
-#include "bake/mie/forward_peak.h"
-#include "bake/mie/refractive_index.h"
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/slab/column_model.h"
-#include "bake/slab/low_orders.h"
-#include "bake/slab/radiance_table.h"
-#include "bake/slab/solve_radiance.h"
-#include "bake/slab/solve_slab.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/mie/droplet_optics.h"
+#include "bake/physics/mie/forward_peak.h"
+#include "bake/physics/mie/refractive_index.h"
+#include "bake/physics/slab/column_model.h"
+#include "bake/physics/slab/low_orders.h"
+#include "bake/physics/slab/radiance_table.h"
+#include "bake/physics/slab/solve_radiance.h"
+#include "bake/physics/slab/solve_slab.h"
 #include "tests/bench/bench.h"
 
 namespace opaline::bake {

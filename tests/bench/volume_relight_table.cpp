@@ -12,7 +12,7 @@
 #include <ctime>
 #include <vector>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "formats/opal/file_bytes.h"
 #include "runtime/opaline.hpp"
 #include "tests/bench/bench.h"

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "bake/example/density_fields.h"
+#include "bake/lab/example/density_fields.h"
 #include "formats/vdb/write_vdb.h"
 #include "tests/bench/bench.h"
 

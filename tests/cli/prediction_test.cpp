@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bake/calibration/rates_cache.h"
+#include "bake/pipeline/calibration/rates_cache.h"
 #include "tests/cli/small_scene.h"
 
 namespace opaline::tests {

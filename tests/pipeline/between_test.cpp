@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bake/accuracy/stored_luminance.h"
-#include "bake/accuracy/surface_probes.h"
+#include "bake/check/stored_luminance.h"
+#include "bake/check/surface_probes.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 

@@ -13,8 +13,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/check_model.h"
-#include "bake/accuracy/model_truth.h"
+#include "bake/check/check_model.h"
+#include "bake/check/model_truth.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "runtime/light_vector.h"
 #include "tests/support/walk_bake.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/layers/layer_knobs.h"
+#include "bake/effects/layers/layer_knobs.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/inspect_scene.h"

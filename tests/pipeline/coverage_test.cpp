@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "bake/accuracy/stored_luminance.h"
+#include "bake/check/stored_luminance.h"
+#include "bake/lights/true_reflection.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/hidden_receivers.h"
-#include "bake/truth/true_reflection.h"
+#include "bake/trace/hidden_receivers.h"
 #include "tests/support/media_bake.h"
 
 // What the 95 % interval of a file's stated error promises: of 100 seeds, which draw the receivers

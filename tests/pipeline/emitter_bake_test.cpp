@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "bake/effects/emitters/emitter_knobs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
-#include "bake/emitters/emitter_knobs.h"
 #include "formats/opal/emitters.h"
 #include "tests/support/bake.h"
 

@@ -5,8 +5,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bake/example/scene_parts.h"
-#include "bake/example/write_gltf.h"
+#include "bake/lab/example/scene_parts.h"
+#include "bake/lab/example/write_gltf.h"
 #include "bake/reference/reference_receivers.h"
 #include "formats/gltf/import_gltf.h"
 #include "tests/bake/reference/reference_support.h"

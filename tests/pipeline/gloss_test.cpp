@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/accuracy/error_warnings.h"
+#include "bake/check/error_warnings.h"
 #include "bake/effects/effects.h"
 #include "bake/reference/estimate.h"
 #include "bake/reference/reference_receivers.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "bake/accuracy/model_pairs.h"
+#include "bake/check/model_pairs.h"
 #include "bake/reference/reference_receivers.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/support/media_bake.h"

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "bake/effects/emitters/emitter_knobs.h"
 #include "bake/effects/transmission/rules_transmission.h"
-#include "bake/emitters/emitter_knobs.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {

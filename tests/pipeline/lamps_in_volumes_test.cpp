@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "bake/accuracy/volumes/volume_error.h"
+#include "bake/check/volumes/volume_error.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/support/media_bake.h"

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/reference/terms.h"
 #include "bake/scene/inspect_scene.h"

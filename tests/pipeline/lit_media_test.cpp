@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "bake/effects/emitters/emitter_knobs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
-#include "bake/emitters/emitter_knobs.h"
 #include "formats/opal/emitters.h"
 #include "tests/support/bake.h"
 

@@ -2,9 +2,9 @@
 
 #include <string>
 
+#include "bake/effects/volumes/plan_volumes.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/scene/inspect_scene.h"
-#include "bake/volumes/plan_volumes.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
-#include "bake/accuracy/volumes/volume_error.h"
-#include "bake/volumes/plan_volumes.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/check/volumes/volume_error.h"
+#include "bake/effects/volumes/plan_volumes.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/support/media_bake.h"

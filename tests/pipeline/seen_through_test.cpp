@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/check_model.h"
-#include "bake/accuracy/model_truth.h"
+#include "bake/check/check_model.h"
+#include "bake/check/model_truth.h"
 #include "bake/effects/transmission/rules_transmission.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/reference/estimate.h"
 #include "bake/reference/random_stream.h"
 #include "bake/scene/flatten_slabs.h"

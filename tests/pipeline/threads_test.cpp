@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
+#include "bake/effects/emitters/emitter_knobs.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
-#include "bake/emitters/emitter_knobs.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/file_bytes.h"
 #include "formats/opal/write_opal.h"

@@ -1,7 +1,7 @@
 // Light that crosses a body unscattered: what a clear body shows, and when it is left out.
 #include <gtest/gtest.h>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/effects/transmission/rules_transmission.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"

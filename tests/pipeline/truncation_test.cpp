@@ -5,7 +5,7 @@
 #include "bake/encode/pack_asset.h"
 #include "bake/encode/select_coefficients.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/support/bake.h"

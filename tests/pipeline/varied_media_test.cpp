@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
 #include "tests/support/varied_media.h"

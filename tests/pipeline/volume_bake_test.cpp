@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "formats/media/fill_body.h"
 #include "formats/media/split_absorption.h"
 #include "formats/opal/cubemap.h"

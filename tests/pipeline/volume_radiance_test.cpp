@@ -5,8 +5,8 @@
 #include <numbers>
 #include <random>
 
-#include "bake/volumes/bake_volumes.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/bake_volumes.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "formats/opal/cubemap.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_march.h"

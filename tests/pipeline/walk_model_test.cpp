@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/reference/reference_receivers.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/orient_bodies.h"

@@ -7,7 +7,7 @@
 #include <iostream>
 #include <vector>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "formats/opal/cubemap.h"
 #include "runtime/gloss.h"
 

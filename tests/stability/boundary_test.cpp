@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "tests/support/media_bake.h"
 
 namespace opaline::bake {

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "bake/effects/multiple/gather_profile.h"
-#include "bake/scattering/dipole.h"
+#include "bake/physics/dipole.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"
 

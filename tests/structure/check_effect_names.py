@@ -21,7 +21,7 @@ from check_rooms import INCLUDE, included_file
 from source_files import source_files
 
 EFFECTS = Path("bake/effects")
-SUBJECT_ROOMS = ["bake/volumes", "bake/layers", "bake/lamps", "bake/emitters"]
+SUBJECT_ROOMS = ["bake/effects/volumes", "bake/effects/layers", "bake/exchange/lamps", "bake/effects/emitters"]
 CONSTANT = re.compile(r'constexpr std::string_view k\w+ = "([^"]+)";')
 TABLE = EFFECTS / "effects.h", EFFECTS / "effects.cpp"
 SHARED = {"formats", "runtime"}  # their words are theirs, whoever uses them

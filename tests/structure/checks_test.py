@@ -132,11 +132,11 @@ class EffectNames(unittest.TestCase):
             self.assertEqual(run("check_effect_names.py", tree)[0], 1, line)
 
     def test_a_name_of_a_subject_is_found_outside_its_constant(self):
-        tree = {**self.TABLE, "bake/volumes/volume_effects.h": 'inline constexpr std::string_view kOnce = "volume-once";\n'}
+        tree = {**self.TABLE, "bake/effects/volumes/volume_effects.h": 'inline constexpr std::string_view kOnce = "volume-once";\n'}
         self.assertEqual(run("check_effect_names.py", {**tree, "bake/pipeline/costs.cpp": "payer(kOnce)"})[0], 0)
         code, output = run("check_effect_names.py", {**tree, "bake/pipeline/costs.cpp": '\npayer("volume-once")'})
         self.assertEqual(code, 1)
-        self.assertIn('bake/pipeline/costs.cpp:2: writes "volume-once", a constant of bake/volumes/volume_effects.h', output)
+        self.assertIn('bake/pipeline/costs.cpp:2: writes "volume-once", a constant of bake/effects/volumes/volume_effects.h', output)
 
 
 class Duplicates(unittest.TestCase):

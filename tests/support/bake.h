@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "bake/pipeline/pipeline.h"
 #include "runtime/light_vector.h"
 #include "runtime/shade.h"

@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "bake/mie/angular_table.h"
-#include "bake/mie/forward_peak.h"
-#include "bake/mie/phase_texture.h"
-#include "bake/slab/radiance_table.h"
+#include "bake/physics/mie/angular_table.h"
+#include "bake/physics/mie/forward_peak.h"
+#include "bake/physics/mie/phase_texture.h"
+#include "bake/physics/slab/radiance_table.h"
 #include "formats/opal/clouds.h"
 
 namespace opaline::test {

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/gauss_legendre.h"
 
 namespace opaline::tests {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "bake/cli/messages.h"
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 
 namespace opaline::cli {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "bake/exchange/other_light.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/haar.h"
 
 namespace opaline::bake {

@@ -12,9 +12,9 @@
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/effects/multiple/walks/view_set.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/slab/even_light.h"
 #include "bake/plan/plan_input.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/slab/even_light.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
 

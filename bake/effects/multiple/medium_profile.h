@@ -4,8 +4,8 @@
 #include <cstdint>
 
 #include "bake/base/context.h"
+#include "bake/physics/profile.h"
 #include "bake/plan/effect.h"
-#include "bake/scattering/profile.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -18,7 +18,7 @@ struct MediumProfile {
     /// do not have: all that a half space returns over what it returns of light scattered more
     /// often.
     std::array<double, 3> all_orders{1, 1, 1};
-    double exit = 1;      ///< c_exit = 1 - F_ext (scattering/README.md, "Exit"), 1 in `paper` mode
+    double exit = 1;      ///< c_exit = 1 - F_ext (physics/README.md, "Exit"), 1 in `paper` mode
     double smallest = 0;  ///< profile_length of the densest band [m]; 0: nothing scatters
     double eta = 1;
 

@@ -19,9 +19,9 @@
 #include "bake/effects/multiple/view_terms.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/exchange/other_light.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/lights/true_irradiance.h"
+#include "bake/physics/fresnel.h"
 #include "bake/scene/even_media.h"
-#include "bake/truth/true_irradiance.h"
 
 namespace opaline::bake {
 namespace {

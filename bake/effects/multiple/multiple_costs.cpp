@@ -11,11 +11,11 @@
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
+#include "bake/physics/dipole.h"
+#include "bake/physics/fresnel.h"
 #include "bake/plan/plan_input.h"
 #include "bake/plan/stage_work.h"
 #include "bake/receivers/kd_order.h"
-#include "bake/scattering/dipole.h"
-#include "bake/scattering/fresnel.h"
 #include "formats/media/mean_cosine.h"
 #include "formats/opal/cubemap.h"
 

@@ -14,9 +14,9 @@
 #include "bake/effects/multiple/walks/view_fit.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/exchange/other_light.h"
+#include "bake/physics/fresnel.h"
 #include "bake/plan/knobs.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -11,7 +11,7 @@
 #include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/row_layout.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

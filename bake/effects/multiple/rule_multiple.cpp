@@ -6,9 +6,9 @@
 
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/walks/walk_space.h"
+#include "bake/physics/dipole.h"
+#include "bake/physics/fresnel.h"
 #include "bake/plan/plan_input.h"
-#include "bake/scattering/dipole.h"
-#include "bake/scattering/fresnel.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "bake/effects/multiple/choose_model.h"
-#include "bake/scattering/dipole.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_once.h"
+#include "bake/physics/dipole.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/half_space_once.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

@@ -7,9 +7,9 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/exchange/other_light.h"
+#include "bake/physics/fresnel.h"
 #include "bake/receivers/kd_order.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 

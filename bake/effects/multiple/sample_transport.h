@@ -7,7 +7,7 @@
 #include "bake/base/context.h"
 #include "bake/effects/multiple/walks/sparse_vectors.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 
 namespace opaline::bake {
 

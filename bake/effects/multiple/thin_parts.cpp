@@ -8,10 +8,10 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
+#include "bake/lights/draw_receivers.h"
 #include "bake/plan/plan_input.h"
 #include "bake/receivers/used_vertices.h"
-#include "bake/transport/body.h"
-#include "bake/truth/draw_receivers.h"
+#include "bake/trace/body.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

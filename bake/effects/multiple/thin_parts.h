@@ -7,7 +7,7 @@
 
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/plan/effect.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

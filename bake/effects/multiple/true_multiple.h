@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "bake/effects/multiple/gather_profile.h"
+#include "bake/lights/luminance.h"
+#include "bake/lights/true_irradiance.h"
 #include "bake/receivers/surface_points.h"
 #include "bake/scene/separate_bodies.h"
-#include "bake/transport/ray_scene.h"
-#include "bake/truth/luminance.h"
-#include "bake/truth/true_irradiance.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "bake/exchange/other_light.h"
+#include "bake/lights/true_reflection.h"
 #include "bake/receivers/other_side.h"
 #include "bake/scene/coverage.h"
-#include "bake/transport/irradiance_transport.h"
-#include "bake/truth/true_reflection.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/haar.h"
 
 namespace opaline::bake {

@@ -7,7 +7,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/packet_lane.h"
+#include "bake/trace/packet_lane.h"
 
 namespace opaline::bake {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

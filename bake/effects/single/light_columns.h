@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/effects/single/light_view.h"
-#include "bake/scattering/entry.h"
+#include "bake/physics/entry.h"
 
 namespace opaline::bake {
 

@@ -8,7 +8,7 @@
 #include "bake/effects/single/light_view.h"
 #include "bake/effects/single/packed_rows.h"
 #include "bake/effects/single/ray_single.h"
-#include "bake/transport/direction_set.h"
+#include "bake/trace/direction_set.h"
 
 namespace opaline::bake {
 

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "bake/scattering/entry.h"
+#include "bake/physics/entry.h"
 
 namespace opaline::bake {
 
-/// A phase function by its Legendre coefficients (scattering/README.md, "Phase functions"):
+/// A phase function by its Legendre coefficients (physics/README.md, "Phase functions"):
 ///     p(cos Theta) = sum_l lambda_l (2 l + 1) / (4 pi) P_l(cos Theta),   lambda_0 = 1,
 /// lambda_l = g^l for Henyey-Greenstein. Every degree gives 2 l + 1 terms g_lm(w_i') h_lm(w_o'),
 /// g_lm = lambda_l Y_lm(-w_i') and h_lm = Y_lm(w_o') with the Y of eval_spherical_harmonics, and

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "bake/effects/single/phase_terms.h"
-#include "bake/scattering/entry.h"
-#include "bake/scattering/path_quadrature.h"
-#include "bake/transport/body.h"
-#include "bake/transport/direction_set.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/physics/entry.h"
+#include "bake/physics/path_quadrature.h"
+#include "bake/trace/body.h"
+#include "bake/trace/direction_set.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "bake/effects/single/single_knobs.h"
+#include "bake/physics/phase.h"
+#include "bake/physics/phase_series.h"
 #include "bake/plan/scattered_once.h"
-#include "bake/scattering/phase.h"
-#include "bake/scattering/phase_series.h"
 
 namespace opaline::bake {
 namespace {

@@ -12,12 +12,12 @@
 #include "bake/effects/single/single_knobs.h"
 #include "bake/effects/single/single_stage.h"
 #include "bake/effects/single/true_single.h"
+#include "bake/physics/entry.h"
+#include "bake/physics/path_quadrature.h"
+#include "bake/physics/phase_series.h"
 #include "bake/plan/scattered_once.h"
 #include "bake/plan/stage_work.h"
 #include "bake/receivers/body_points.h"
-#include "bake/scattering/entry.h"
-#include "bake/scattering/path_quadrature.h"
-#include "bake/scattering/phase_series.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -4,7 +4,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/single/light_maps.h"
-#include "bake/scattering/phase_series.h"
+#include "bake/physics/phase_series.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "bake/scattering/entry.h"
+#include "bake/physics/entry.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "bake/effects/single/ray_single.h"
-#include "bake/scattering/phase.h"
-#include "bake/truth/luminance.h"
-#include "bake/truth/true_irradiance.h"
+#include "bake/lights/luminance.h"
+#include "bake/lights/true_irradiance.h"
+#include "bake/physics/phase.h"
 
 namespace opaline::bake {
 

@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <string>
 
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/gauss_legendre.h"
 
 namespace opaline::bake {
 namespace {

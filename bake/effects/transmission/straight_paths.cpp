@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "bake/scattering/entry.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/transport/body.h"
-#include "bake/transport/packet_lane.h"
+#include "bake/physics/entry.h"
+#include "bake/physics/fresnel.h"
+#include "bake/trace/body.h"
+#include "bake/trace/packet_lane.h"
 
 namespace opaline::bake {
 namespace {

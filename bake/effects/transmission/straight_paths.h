@@ -9,8 +9,8 @@
 
 #include "bake/plan/effect.h"
 #include "bake/scene/medium_field.h"
-#include "bake/transport/bodies_at.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/bodies_at.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

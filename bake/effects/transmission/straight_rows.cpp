@@ -9,7 +9,7 @@
 #include "bake/base/frame.h"
 #include "bake/effects/transmission/view_fit.h"
 #include "bake/exchange/seen_lamps.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 

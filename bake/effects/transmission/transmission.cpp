@@ -18,10 +18,10 @@
 #include "bake/effects/transmission/straight_rows.h"
 #include "bake/effects/transmission/view_fit.h"
 #include "bake/exchange/other_light.h"
+#include "bake/lights/luminance.h"
+#include "bake/lights/true_irradiance.h"
+#include "bake/physics/fresnel.h"
 #include "bake/plan/stage_work.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/truth/luminance.h"
-#include "bake/truth/true_irradiance.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

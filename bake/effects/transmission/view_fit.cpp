@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "bake/base/frame.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/calibration/rates_cache.h"
+#include "bake/pipeline/calibration/rates_cache.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/compare/compare_files.h"
+#include "bake/lab/compare/compare_files.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "bake/compare/relight_table.h"
+#include "bake/lab/compare/relight_table.h"
 #include "formats/image/exr.h"
 #include "formats/image/png.h"
 #include "tests/support/temporary_folder.h"

@@ -1,4 +1,4 @@
-#include "bake/compare/relight_table.h"
+#include "bake/lab/compare/relight_table.h"
 
 #include <gmock/gmock.h>
 

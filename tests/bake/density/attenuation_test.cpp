@@ -1,10 +1,10 @@
-#include "bake/transport/density/attenuation.h"
+#include "bake/trace/density/attenuation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/volumes/add_scattered.h"
+#include "bake/effects/volumes/add_scattered.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/bake/volumes/volume_support.h"
 

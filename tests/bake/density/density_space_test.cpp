@@ -1,4 +1,4 @@
-#include "bake/transport/density/density_space.h"
+#include "bake/trace/density/density_space.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/transport/density/scaled_phase.h"
+#include "bake/trace/density/scaled_phase.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/volumes/degree_rate.h"
+#include "bake/effects/volumes/degree_rate.h"
 #include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::bake {

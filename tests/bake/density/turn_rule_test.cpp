@@ -1,10 +1,10 @@
-#include "bake/transport/density/turn_rule.h"
+#include "bake/trace/density/turn_rule.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/transport/density/scaled_phase.h"
+#include "bake/trace/density/scaled_phase.h"
 #include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::bake {

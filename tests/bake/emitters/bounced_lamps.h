@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/emitters/lamp_rows.h"
+#include "bake/effects/emitters/lamp_rows.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/lamp_bounces.h"
 #include "bake/plan/knobs.h"

@@ -1,12 +1,12 @@
 // The file's rows against paths that share nothing with them, and both against closed forms.
-#include "bake/emitters/emitter_error.h"
+#include "bake/effects/emitters/emitter_error.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "bake/emitters/bake_emitters.h"
-#include "bake/emitters/emitter_knobs.h"
+#include "bake/effects/emitters/bake_emitters.h"
+#include "bake/effects/emitters/emitter_knobs.h"
 #include "tests/bake/emitters/bounced_lamps.h"
 
 namespace opaline::bake {

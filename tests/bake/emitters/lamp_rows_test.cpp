@@ -1,5 +1,5 @@
 // What receivers get of lamps, straight and from surfaces.
-#include "bake/emitters/lamp_rows.h"
+#include "bake/effects/emitters/lamp_rows.h"
 
 #include <gtest/gtest.h>
 

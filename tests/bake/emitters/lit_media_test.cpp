@@ -1,9 +1,9 @@
 // Light of lamps as media take it, and media as lamps find them.
-#include "bake/emitters/lit_media.h"
+#include "bake/effects/emitters/lit_media.h"
 
 #include <gtest/gtest.h>
 
-#include "bake/emitters/immersed_lamps.h"
+#include "bake/effects/emitters/immersed_lamps.h"
 #include "bake/exchange/other_light.h"
 #include "bake/receivers/surface_patches.h"
 #include "tests/bake/lamps/lamp_scenes.h"

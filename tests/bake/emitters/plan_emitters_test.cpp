@@ -1,11 +1,11 @@
-#include "bake/emitters/plan_emitters.h"
+#include "bake/effects/emitters/plan_emitters.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "bake/effects/effects.h"
-#include "bake/emitters/emitter_knobs.h"
+#include "bake/effects/emitters/emitter_knobs.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/support/volumes.h"
 

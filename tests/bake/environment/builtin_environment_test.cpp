@@ -1,4 +1,4 @@
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 
 #include <gmock/gmock.h>
 

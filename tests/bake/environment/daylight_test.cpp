@@ -1,4 +1,4 @@
-#include "bake/environment/daylight.h"
+#include "bake/lights/daylight.h"
 
 #include <gtest/gtest.h>
 

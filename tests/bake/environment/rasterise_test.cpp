@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 
 namespace opaline::bake {
 namespace {

@@ -1,4 +1,4 @@
-#include "bake/example/density_fields.h"
+#include "bake/lab/example/density_fields.h"
 
 #include <gtest/gtest.h>
 

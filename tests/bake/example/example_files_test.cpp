@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "bake/example/example_scenes.h"
+#include "bake/lab/example/example_scenes.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {

@@ -11,8 +11,8 @@
 #include <set>
 #include <utility>
 
-#include "bake/example/example_scenes.h"
-#include "bake/example/solid_mesh.h"
+#include "bake/lab/example/example_scenes.h"
+#include "bake/lab/example/solid_mesh.h"
 #include "tests/bake/example/facing.h"
 
 namespace opaline::bake {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/example/triangle_mesh.h"
+#include "bake/lab/example/triangle_mesh.h"
 
 namespace opaline::bake {
 

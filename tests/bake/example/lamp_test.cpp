@@ -1,5 +1,5 @@
 // Parts of the example `lamp`.
-#include "bake/example/scene_parts.h"
+#include "bake/lab/example/scene_parts.h"
 
 #include <gtest/gtest.h>
 

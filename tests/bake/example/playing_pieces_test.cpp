@@ -1,5 +1,5 @@
 // Parts of the example `playing-pieces`.
-#include "bake/example/scene_parts.h"
+#include "bake/lab/example/scene_parts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/example/example_scenes.h"
+#include "bake/lab/example/example_scenes.h"
 #include "tests/bake/example/facing.h"
 
 namespace opaline::bake {

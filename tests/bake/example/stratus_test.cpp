@@ -1,11 +1,11 @@
-#include "bake/example/scene_parts.h"
+#include "bake/lab/example/scene_parts.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "bake/example/example_scenes.h"
+#include "bake/lab/example/example_scenes.h"
 #include "formats/media/load_clouds.h"
 #include "formats/media/read_media.h"
 #include "tests/support/temporary_folder.h"

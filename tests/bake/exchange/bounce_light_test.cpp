@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "tests/bake/exchange/bounce_support.h"
 

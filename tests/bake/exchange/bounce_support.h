@@ -8,7 +8,7 @@
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/inspect_scene.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "tests/support/bake.h"
 
 namespace opaline::tests {

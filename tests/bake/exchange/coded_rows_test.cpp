@@ -1,4 +1,4 @@
-#include "bake/transport/coded_rows.h"
+#include "bake/trace/coded_rows.h"
 
 #include <gtest/gtest.h>
 

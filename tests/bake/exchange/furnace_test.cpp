@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/scene/lobe_record.h"
 #include "tests/bake/exchange/bounce_support.h"

@@ -10,8 +10,8 @@
 
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/scatterers.h"
+#include "bake/physics/fresnel.h"
 #include "bake/reference/rough_boundary.h"
-#include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/support/scenes.h"

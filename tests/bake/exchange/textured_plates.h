@@ -9,7 +9,7 @@
 #include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/bounce_rays.h"
-#include "bake/truth/test_lights.h"
+#include "bake/lights/test_lights.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/bake/exchange/bounce_support.h"

@@ -1,4 +1,4 @@
-#include "bake/lamps/onward_ray.h"
+#include "bake/exchange/lamps/onward_ray.h"
 
 #include <gtest/gtest.h>
 

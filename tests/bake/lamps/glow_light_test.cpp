@@ -1,5 +1,5 @@
 // Light of volumes on surfaces, against closed forms and paths.
-#include "bake/lamps/glow_light.h"
+#include "bake/exchange/lamps/glow_light.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numbers>
 
 #include "bake/effects/effects.h"
-#include "bake/emitters/emitter_error.h"
-#include "bake/lamps/trace_particles.h"
-#include "bake/volumes/bake_volumes.h"
+#include "bake/effects/emitters/emitter_error.h"
+#include "bake/effects/volumes/bake_volumes.h"
+#include "bake/exchange/lamps/trace_particles.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/support/volumes.h"
 

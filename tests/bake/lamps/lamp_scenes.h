@@ -7,13 +7,13 @@
 #include <utility>
 #include <vector>
 
-#include "bake/lamps/lamp_sources.h"
-#include "bake/lamps/lamps.h"
-#include "bake/lamps/receiver_light.h"
-#include "bake/lamps/trace_particles.h"
+#include "bake/exchange/lamps/lamp_sources.h"
+#include "bake/exchange/lamps/lamps.h"
+#include "bake/exchange/lamps/receiver_light.h"
+#include "bake/exchange/lamps/trace_particles.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "tests/support/scenes.h"
 
 namespace opaline::tests {

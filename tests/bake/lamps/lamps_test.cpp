@@ -1,5 +1,5 @@
 // What an emitter is, and what it sends out.
-#include "bake/lamps/lamps.h"
+#include "bake/exchange/lamps/lamps.h"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // Light of lamps by way of metals and through clear media.
-#include "bake/lamps/onward_ray.h"
+#include "bake/exchange/lamps/onward_ray.h"
 
 #include <gtest/gtest.h>
 

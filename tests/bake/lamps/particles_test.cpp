@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "bake/lamps/particle_start.h"
-#include "bake/lamps/trace_particles.h"
+#include "bake/exchange/lamps/particle_start.h"
+#include "bake/exchange/lamps/trace_particles.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 
 namespace opaline::bake {

@@ -1,5 +1,5 @@
 // Light straight from lamps, against closed forms.
-#include "bake/lamps/straight_light.h"
+#include "bake/exchange/lamps/straight_light.h"
 
 #include <gtest/gtest.h>
 

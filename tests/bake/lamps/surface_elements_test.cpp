@@ -1,4 +1,4 @@
-#include "bake/lamps/surface_elements.h"
+#include "bake/exchange/lamps/surface_elements.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <map>
 #include <numeric>
 
-#include "bake/lamps/triangle_clusters.h"
+#include "bake/exchange/lamps/triangle_clusters.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/bake/path_differentials/random_inputs.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/lamps/onward_ray.h"
-#include "bake/lamps/straight_light.h"
+#include "bake/exchange/lamps/onward_ray.h"
+#include "bake/exchange/lamps/straight_light.h"
 #include "bake/scene/texture_pyramid.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 

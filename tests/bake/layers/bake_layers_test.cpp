@@ -1,4 +1,4 @@
-#include "bake/layers/bake_layers.h"
+#include "bake/effects/layers/bake_layers.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/layers/layer_error.h"
+#include "bake/effects/layers/layer_error.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/layers/layer_tables.h"
+#include "bake/effects/layers/layer_tables.h"
 #include "tests/bake/layers/layer_support.h"
 
 namespace opaline::bake {

@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "bake/layers/bake_layers.h"
-#include "bake/layers/layer_knobs.h"
+#include "bake/effects/layers/bake_layers.h"
+#include "bake/effects/layers/layer_knobs.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

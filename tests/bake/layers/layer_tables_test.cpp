@@ -1,4 +1,4 @@
-#include "bake/layers/layer_tables.h"
+#include "bake/effects/layers/layer_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <numbers>
 #include <span>
 
-#include "bake/mie/phase_texture.h"
-#include "bake/slab/solve_radiance.h"
-#include "bake/slab/solve_slab.h"
+#include "bake/physics/mie/phase_texture.h"
+#include "bake/physics/slab/solve_radiance.h"
+#include "bake/physics/slab/solve_slab.h"
 #include "tests/bake/layers/layer_support.h"
 
 namespace opaline::bake {

@@ -1,6 +1,6 @@
 // Printed forms of [Bouthors2006] as tables. Expected values are those that are known of the
 // paper, or are computed here from the paper's equations.
-#include "bake/layers/paper_tables.h"
+#include "bake/effects/layers/paper_tables.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/layers/layer_error.h"
-#include "bake/layers/layer_tables.h"
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/slab/column_model.h"
+#include "bake/effects/layers/layer_error.h"
+#include "bake/effects/layers/layer_tables.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/slab/column_model.h"
 #include "formats/opal/check_clouds.h"
 #include "tests/bake/layers/layer_support.h"
 

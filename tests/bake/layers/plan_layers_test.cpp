@@ -1,14 +1,14 @@
-#include "bake/layers/plan_layers.h"
+#include "bake/effects/layers/plan_layers.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "bake/layers/layer_tables.h"
-#include "bake/layers/layer_work.h"
-#include "bake/slab/low_orders.h"
-#include "bake/slab/solve_slab.h"
+#include "bake/effects/layers/layer_tables.h"
+#include "bake/effects/layers/layer_work.h"
+#include "bake/physics/slab/low_orders.h"
+#include "bake/physics/slab/solve_slab.h"
 #include "tests/bake/layers/layer_support.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/accuracy/measure_error.h"
+#include "bake/check/measure_error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "bake/accuracy/error_warnings.h"
+#include "bake/check/error_warnings.h"
 
 namespace opaline::bake {
 namespace {

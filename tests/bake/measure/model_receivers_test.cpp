@@ -1,4 +1,4 @@
-#include "bake/accuracy/check_model.h"
+#include "bake/check/check_model.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/surface_probes.h"
+#include "bake/check/surface_probes.h"
 #include "tests/support/media.h"
 #include "tests/support/media_bake.h"
 

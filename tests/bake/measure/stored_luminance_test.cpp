@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bake/accuracy/stored_luminance.h"
+#include "bake/check/stored_luminance.h"
 
 namespace opaline::bake {
 namespace {

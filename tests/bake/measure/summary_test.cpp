@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/accuracy/measure_error.h"
+#include "bake/check/measure_error.h"
 
 namespace opaline::bake {
 namespace {

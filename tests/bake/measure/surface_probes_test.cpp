@@ -1,4 +1,4 @@
-#include "bake/accuracy/surface_probes.h"
+#include "bake/check/surface_probes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/truth/test_lights.h"
+#include "bake/lights/test_lights.h"
 
 #include <gtest/gtest.h>
 

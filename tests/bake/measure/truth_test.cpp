@@ -1,4 +1,4 @@
-#include "bake/accuracy/measure_error.h"
+#include "bake/check/measure_error.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/single/true_single.h"
+#include "bake/lights/true_reflection.h"
+#include "bake/physics/fresnel.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/truth/true_reflection.h"
 #include "formats/opal/cubemap.h"
 #include "tests/bake/single/single_support.h"
 

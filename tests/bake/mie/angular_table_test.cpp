@@ -1,4 +1,4 @@
-#include "bake/mie/angular_table.h"
+#include "bake/physics/mie/angular_table.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/scattering/phase.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/mie/mie_support.h"
 
 namespace opaline::bake {

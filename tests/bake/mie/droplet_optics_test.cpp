@@ -1,4 +1,4 @@
-#include "bake/mie/droplet_optics.h"
+#include "bake/physics/mie/droplet_optics.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/mie/sphere_scattering.h"
+#include "bake/physics/mie/sphere_scattering.h"
 #include "tests/bake/mie/mie_support.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/mie/droplets.h"
+#include "bake/physics/mie/droplets.h"
 
 #include <gtest/gtest.h>
 

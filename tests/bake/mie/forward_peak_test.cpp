@@ -1,4 +1,4 @@
-#include "bake/mie/forward_peak.h"
+#include "bake/physics/mie/forward_peak.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/mie/droplet_optics.h"
-#include "bake/scattering/phase.h"
+#include "bake/physics/mie/droplet_optics.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/mie/mie_support.h"
 
 namespace opaline::bake {

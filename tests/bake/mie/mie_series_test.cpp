@@ -1,4 +1,4 @@
-#include "bake/mie/mie_series.h"
+#include "bake/physics/mie/mie_series.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/mie/sphere_scattering.h"
+#include "bake/physics/mie/sphere_scattering.h"
 
 namespace opaline::bake {
 namespace {

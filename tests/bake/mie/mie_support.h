@@ -7,9 +7,9 @@
 #include <numbers>
 #include <tuple>
 
-#include "bake/mie/droplet_optics.h"
-#include "bake/mie/refractive_index.h"
-#include "bake/mie/sphere_scattering.h"
+#include "bake/physics/mie/droplet_optics.h"
+#include "bake/physics/mie/refractive_index.h"
+#include "bake/physics/mie/sphere_scattering.h"
 
 namespace opaline::tests {
 

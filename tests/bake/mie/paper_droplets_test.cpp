@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bake/mie/droplet_optics.h"
-#include "bake/mie/forward_peak.h"
-#include "bake/mie/phase_texture.h"
+#include "bake/physics/mie/droplet_optics.h"
+#include "bake/physics/mie/forward_peak.h"
+#include "bake/physics/mie/phase_texture.h"
 #include "tests/bake/mie/mie_support.h"
 #include "tests/support/cloud_table.h"
 

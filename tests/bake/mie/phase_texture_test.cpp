@@ -1,11 +1,11 @@
-#include "bake/mie/phase_texture.h"
+#include "bake/physics/mie/phase_texture.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/mie/droplet_optics.h"
+#include "bake/physics/mie/droplet_optics.h"
 #include "tests/bake/mie/mie_support.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/mie/refractive_index.h"
+#include "bake/physics/mie/refractive_index.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/mie/sphere_scattering.h"
+#include "bake/physics/mie/sphere_scattering.h"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "bake/physics/fresnel.h"
 #include "bake/receivers/kd_order.h"
-#include "bake/scattering/fresnel.h"
 #include "tests/support/reference_table.h"
 
 namespace opaline::bake {

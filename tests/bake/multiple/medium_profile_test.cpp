@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "bake/effects/multiple/gather_profile.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/slab/even_light.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/slab/even_light.h"
 
 namespace opaline::bake {
 namespace {

@@ -8,7 +8,7 @@
 #include "bake/exchange/other_light.h"
 #include "bake/exchange/patch_light.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/haar.h"
 #include "tests/support/scenes.h"
 

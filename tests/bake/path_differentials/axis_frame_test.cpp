@@ -1,4 +1,4 @@
-#include "bake/path_differentials/axis_frame.h"
+#include "bake/physics/path_differentials/axis_frame.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

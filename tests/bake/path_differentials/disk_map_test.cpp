@@ -1,4 +1,4 @@
-#include "bake/path_differentials/disk_map.h"
+#include "bake/physics/path_differentials/disk_map.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

@@ -1,4 +1,4 @@
-#include "bake/path_differentials/footprint.h"
+#include "bake/physics/path_differentials/footprint.h"
 
 #include <numbers>
 

@@ -1,9 +1,9 @@
-#include "bake/path_differentials/merge_columns.h"
+#include "bake/physics/path_differentials/merge_columns.h"
 
 #include <vector>
 
-#include "bake/path_differentials/axis_frame.h"
-#include "bake/path_differentials/footprint.h"
+#include "bake/physics/path_differentials/axis_frame.h"
+#include "bake/physics/path_differentials/footprint.h"
 #include "tests/bake/path_differentials/event_check.h"
 
 namespace opaline::bake {

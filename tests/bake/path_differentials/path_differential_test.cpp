@@ -1,8 +1,8 @@
-#include "bake/path_differentials/path_differential.h"
+#include "bake/physics/path_differentials/path_differential.h"
 
 #include <numbers>
 
-#include "bake/path_differentials/area_sample.h"
+#include "bake/physics/path_differentials/area_sample.h"
 #include "tests/bake/path_differentials/event_check.h"
 #include "tests/bake/path_differentials/path_rules.h"
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "bake/path_differentials/axis_frame.h"
-#include "bake/path_differentials/path_differential.h"
+#include "bake/physics/path_differentials/axis_frame.h"
+#include "bake/physics/path_differentials/path_differential.h"
 #include "tests/bake/path_differentials/event_check.h"
 #include "tests/bake/path_differentials/path_rules.h"
 

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "bake/path_differentials/axis_frame.h"
-#include "bake/path_differentials/path_differential.h"
+#include "bake/physics/path_differentials/axis_frame.h"
+#include "bake/physics/path_differentials/path_differential.h"
 #include "tests/bake/path_differentials/primal.h"
 
 namespace opaline::tests {

@@ -1,4 +1,4 @@
-#include "bake/path_differentials/surface_shape.h"
+#include "bake/physics/path_differentials/surface_shape.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

@@ -1,4 +1,4 @@
-#include "bake/path_differentials/visible_normal.h"
+#include "bake/physics/path_differentials/visible_normal.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

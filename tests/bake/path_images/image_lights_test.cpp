@@ -1,10 +1,10 @@
-#include "bake/path_images/image_lights.h"
+#include "bake/lab/path_images/image_lights.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::bake {

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/path_images/image_lights.h"
-#include "bake/path_integral/quasi_path.h"
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/scattering/phase.h"
+#include "bake/lab/path_images/image_lights.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/path_integral/quasi_path.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/path_images/path_image_support.h"
 #include "tests/bake/path_integral/path_support.h"
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "bake/path_images/path_image.h"
+#include "bake/lab/path_images/path_image.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/reference/transport_rows.h"
 #include "tests/support/volumes.h"

@@ -1,9 +1,9 @@
-#include "bake/path_images/path_image.h"
+#include "bake/lab/path_images/path_image.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/phase.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/path_images/path_image_support.h"
 
 namespace opaline::tests {

@@ -1,4 +1,4 @@
-#include "bake/path_integral/forward_split.h"
+#include "bake/physics/path_integral/forward_split.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/path_integral/least_attenuation.h"
+#include "bake/physics/path_integral/least_attenuation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/path_integral/path_estimate.h"
+#include "bake/physics/path_integral/path_estimate.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
-#include "bake/path_integral/grid_medium.h"
-#include "bake/path_integral/zonal_table.h"
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/scattering/phase.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/path_integral/grid_medium.h"
+#include "bake/physics/path_integral/zonal_table.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/path_integral/path_support.h"
 
 namespace opaline::bake {

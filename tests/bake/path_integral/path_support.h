@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/path_integral/turn.h"
-#include "bake/path_integral/volume_box.h"
+#include "bake/physics/path_integral/turn.h"
+#include "bake/physics/path_integral/volume_box.h"
 #include "formats/sparse_grid.h"
 #include "tests/support/volume_table.h"
 

@@ -1,11 +1,11 @@
-#include "bake/path_integral/path_estimate.h"
+#include "bake/physics/path_integral/path_estimate.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "bake/path_integral/grid_medium.h"
+#include "bake/physics/path_integral/grid_medium.h"
 #include "tests/bake/path_integral/path_support.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/path_integral/quasi_path.h"
+#include "bake/physics/path_integral/quasi_path.h"
 
 #include <gtest/gtest.h>
 

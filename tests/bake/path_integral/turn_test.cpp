@@ -1,4 +1,4 @@
-#include "bake/path_integral/turn.h"
+#include "bake/physics/path_integral/turn.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/path_integral/zonal_table.h"
+#include "bake/physics/path_integral/zonal_table.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/path_integral/forward_split.h"
-#include "bake/scattering/phase.h"
-#include "bake/scattering/poisson_phase.h"
+#include "bake/physics/path_integral/forward_split.h"
+#include "bake/physics/phase.h"
+#include "bake/physics/poisson_phase.h"
 #include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::bake {

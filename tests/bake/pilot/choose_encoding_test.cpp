@@ -1,4 +1,4 @@
-#include "bake/accuracy/pilot/pilot.h"
+#include "bake/check/pilot/pilot.h"
 
 #include <gtest/gtest.h>
 

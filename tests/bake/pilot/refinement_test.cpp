@@ -1,4 +1,4 @@
-#include "bake/accuracy/pilot/refinement.h"
+#include "bake/check/pilot/refinement.h"
 #include "tests/support/effects.h"
 
 #include <gtest/gtest.h>

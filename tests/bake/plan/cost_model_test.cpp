@@ -68,8 +68,8 @@ TEST(CostModel, TotalIsTheSumOfStagesAndOfEffectsAndTheRest) {
 }
 
 // Light maps of a medium show all its bodies, and are drawn once for the receivers of all of them
-// that fit into a batch (rows/shared_batches): 16 balls cost some 16 times as much as one, but for
-// rays, which are dearer among more triangles.
+// that fit into a batch (effects/rows/shared_batches): 16 balls cost some 16 times as much as one,
+// but for rays, which are dearer among more triangles.
 TEST(CostModel, BodiesOfAMediumShareTheLightMapsOfSingleScattering) {
     const auto seconds_of_single = [](int balls) {
         std::vector<formats::Primitive> primitives;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
 namespace {

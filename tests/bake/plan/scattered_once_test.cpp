@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "bake/scattering/phase_series.h"
-#include "bake/slab/even_light.h"
+#include "bake/physics/phase_series.h"
+#include "bake/physics/slab/even_light.h"
 #include "tests/support/media.h"
 
 namespace opaline::bake {

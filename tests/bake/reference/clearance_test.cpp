@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bake/transport/clearance_grid.h"
+#include "bake/trace/clearance_grid.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::tests {

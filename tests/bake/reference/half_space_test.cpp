@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bake/slab/even_light.h"
+#include "bake/physics/slab/even_light.h"
 #include "tests/bake/reference/reference_support.h"
 
 namespace opaline::tests {
@@ -23,7 +23,7 @@ TEST(ReferenceHalfSpace, SingleAndMultipleScatteringAgreeWithThePublishedWalk) {
         float eta, albedo;
         double single, multiple;
     };
-    // scattering/README.md, "Half space", the columns of the walk: standard error about 0.001.
+    // physics/README.md, "Half space", the columns of the walk: standard error about 0.001.
     for (const Row& row : {Row{1.0f, 0.80f, 0.164, 0.178},
                            {1.3f, 0.30f, 0.0235, 0.0072},
                            {1.3f, 0.80f, 0.0629, 0.1188},

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "bake/path_differentials/bounded_change.h"
-#include "bake/path_differentials/surface_shape.h"
+#include "bake/physics/path_differentials/bounded_change.h"
+#include "bake/physics/path_differentials/surface_shape.h"
 #include "bake/reference/glossy_brdf.h"
 #include "bake/reference/rough_boundary.h"
 #include "tests/bake/reference/reference_support.h"

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "bake/reference/reference_receivers.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/scattering/phase_support.h"

@@ -9,9 +9,9 @@
 #include <span>
 #include <vector>
 
+#include "bake/effects/rows/gather_rows.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/rows/gather_rows.h"
 #include "bake/scene/inspect_scene.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"

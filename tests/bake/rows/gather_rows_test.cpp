@@ -1,12 +1,12 @@
-#include "bake/rows/gather_rows.h"
+#include "bake/effects/rows/gather_rows.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "bake/effects/rows/shared_batches.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/rows/shared_batches.h"
 #include "bake/scene/inspect_scene.h"
 #include "formats/opal/cubemap.h"
 #include "tests/bake/single/single_support.h"

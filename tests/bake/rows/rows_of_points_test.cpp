@@ -1,4 +1,4 @@
-#include "bake/rows/gather_rows.h"
+#include "bake/effects/rows/gather_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "bake/scattering/profile.h"
+#include "bake/physics/profile.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
 namespace {
@@ -28,7 +28,7 @@ TEST(BeamDiffusion, TailIsTheIntegralOfTheProfile) {
 }
 
 TEST(BeamDiffusion, ReflectanceIsThatOfTheReferenceTable) {
-    // scattering/README.md, "Half space", column "beams": R (1 - F_ext), to its three or four
+    // physics/README.md, "Half space", column "beams": R (1 - F_ext), to its three or four
     // digits.
     struct Row {
         double eta, albedo, expected;

@@ -1,10 +1,10 @@
-#include "bake/scattering/dipole.h"
+#include "bake/physics/dipole.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "tests/bake/scattering/table_support.h"
 
 namespace opaline::bake {

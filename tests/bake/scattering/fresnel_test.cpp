@@ -1,10 +1,10 @@
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/gauss_legendre.h"
 #include "tests/bake/scattering/table_support.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/scattering/profile.h"
+#include "bake/physics/profile.h"
 
 #include <gtest/gtest.h>
 

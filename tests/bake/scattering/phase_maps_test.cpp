@@ -1,4 +1,4 @@
-#include "bake/scattering/phase_maps.h"
+#include "bake/physics/phase_maps.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "bake/scattering/phase.h"
-#include "bake/scattering/phase_series.h"
+#include "bake/physics/phase.h"
+#include "bake/physics/phase_series.h"
 #include "formats/opal/cubemap.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/bake/scattering/table_support.h"

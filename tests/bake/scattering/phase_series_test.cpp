@@ -1,4 +1,4 @@
-#include "bake/scattering/phase_series.h"
+#include "bake/physics/phase_series.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/scattering/phase.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/bake/scattering/table_support.h"
 
@@ -108,7 +108,7 @@ TEST(PhaseSeries, FewestTermsThatMeetTheToleranceAreWholeDegrees) {
     EXPECT_EQ(chosen({}, 0), 1u);
     EXPECT_EQ(chosen(rayleigh(), 0), 9u);
     EXPECT_EQ(chosen(rayleigh(), 0.3), 1u);  // sqrt(.05 / 1.05) = .218
-    EXPECT_EQ(chosen(hg(0.25), 0.42), 1u);   // scattering/README.md: .4157, .1330, .0392, ...
+    EXPECT_EQ(chosen(hg(0.25), 0.42), 1u);   // physics/README.md: .4157, .1330, .0392, ...
     EXPECT_EQ(chosen(hg(0.25), 0.41), 4u);
     EXPECT_EQ(chosen(hg(-0.25), 0.04), 9u);
     EXPECT_EQ(chosen(hg(0.25), 0.012), 16u);

@@ -1,11 +1,11 @@
-#include "bake/scattering/phase.h"
+#include "bake/physics/phase.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/gauss_legendre.h"
 #include "tests/bake/scattering/table_support.h"
 #include "tests/support/volume_table.h"
 

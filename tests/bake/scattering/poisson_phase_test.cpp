@@ -1,13 +1,13 @@
-#include "bake/scattering/poisson_phase.h"
+#include "bake/physics/poisson_phase.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/scattering/phase.h"
-#include "bake/scattering/phase_series.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/phase.h"
+#include "bake/physics/phase_series.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/support/volume_table.h"
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "bake/scattering/phase_series.h"
-#include "bake/scattering/poisson_phase.h"
+#include "bake/physics/phase_series.h"
+#include "bake/physics/poisson_phase.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/support/volume_table.h"
 

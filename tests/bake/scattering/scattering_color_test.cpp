@@ -1,4 +1,4 @@
-#include "bake/scattering/scattering_color.h"
+#include "bake/physics/scattering_color.h"
 
 #include <gtest/gtest.h>
 

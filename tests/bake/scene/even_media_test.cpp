@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bake/scattering/scattering_color.h"
+#include "bake/physics/scattering_color.h"
 #include "tests/support/media.h"
 #include "tests/support/varied_media.h"
 

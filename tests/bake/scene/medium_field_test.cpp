@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "bake/scattering/scattering_color.h"
+#include "bake/physics/scattering_color.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/marble.h"
 #include "formats/image/srgb.h"

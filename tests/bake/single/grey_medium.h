@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "bake/scattering/path_quadrature.h"
+#include "bake/physics/path_quadrature.h"
 
 namespace opaline::tests {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/entry.h"
-#include "bake/scattering/path_quadrature.h"
+#include "bake/physics/entry.h"
+#include "bake/physics/path_quadrature.h"
 #include "tests/bake/single/grey_medium.h"
 #include "tests/support/reference_table.h"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "bake/scattering/fresnel.h"
-#include "bake/slab/slab_walk.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/slab/slab_walk.h"
 #include "tests/bake/slab/slab_support.h"
 
 namespace opaline::tests {

@@ -1,4 +1,4 @@
-#include "bake/slab/column_model.h"
+#include "bake/physics/slab/column_model.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
-#include "bake/slab/even_light.h"
+#include "bake/physics/slab/even_light.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <limits>
 
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/scattering/half_space_once.h"
-#include "bake/slab/slab_walk.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/half_space_once.h"
+#include "bake/physics/slab/slab_walk.h"
 #include "tests/support/reference_table.h"
 
 namespace opaline::bake {
@@ -38,7 +38,7 @@ SlabShares walk_even_light(double albedo, double g, double eta, double thickness
 }
 
 TEST(HalfSpace, ReturnsTheReflectancesThatWereMeasuredIndependently) {
-    // scattering/README.md, "Half space": eta, albedo, single, multiple; standard error 0.001.
+    // physics/README.md, "Half space": eta, albedo, single, multiple; standard error 0.001.
     const double rows[][4] = {{1.0, .80, .164, .178},
                               {1.3, .30, .0235, .0072},
                               {1.3, .80, .0629, .1188},

@@ -1,4 +1,4 @@
-#include "bake/slab/low_orders.h"
+#include "bake/physics/slab/low_orders.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bake/slab/solve_slab.h"
+#include "bake/physics/slab/solve_slab.h"
 
 namespace opaline::bake {
 namespace {

@@ -7,10 +7,10 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/scattering/gauss_legendre.h"
-#include "bake/scattering/phase_series.h"
-#include "bake/slab/slab_walk.h"
-#include "bake/slab/solve_slab.h"
+#include "bake/physics/gauss_legendre.h"
+#include "bake/physics/phase_series.h"
+#include "bake/physics/slab/slab_walk.h"
+#include "bake/physics/slab/solve_slab.h"
 
 namespace opaline::tests {
 

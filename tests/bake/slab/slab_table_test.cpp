@@ -1,4 +1,4 @@
-#include "bake/slab/radiance_table.h"
+#include "bake/physics/slab/radiance_table.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "bake/slab/low_orders.h"
+#include "bake/physics/slab/low_orders.h"
 #include "tests/bake/slab/slab_support.h"
 
 namespace opaline::tests {

@@ -1,4 +1,4 @@
-#include "bake/slab/slab_walk.h"
+#include "bake/physics/slab/slab_walk.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cstring>
 #include <numbers>
 
-#include "bake/scattering/phase.h"
-#include "bake/slab/solve_radiance.h"
+#include "bake/physics/phase.h"
+#include "bake/physics/slab/solve_radiance.h"
 #include "tests/bake/slab/slab_support.h"
 
 namespace opaline::tests {

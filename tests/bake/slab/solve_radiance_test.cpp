@@ -1,13 +1,13 @@
-#include "bake/slab/solve_radiance.h"
+#include "bake/physics/slab/solve_radiance.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/phase.h"
-#include "bake/slab/low_orders.h"
-#include "bake/slab/radiance_table.h"
+#include "bake/physics/phase.h"
+#include "bake/physics/slab/low_orders.h"
+#include "bake/physics/slab/radiance_table.h"
 #include "tests/bake/slab/slab_support.h"
 
 namespace opaline::tests {

@@ -1,4 +1,4 @@
-#include "bake/slab/solve_slab.h"
+#include "bake/physics/slab/solve_slab.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/transport/bake_openness.h"
+#include "bake/trace/bake_openness.h"
 
 #include <gtest/gtest.h>
 

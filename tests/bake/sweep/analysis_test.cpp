@@ -1,4 +1,4 @@
-#include "bake/accuracy/sweep/analysis.h"
+#include "bake/lab/sweep/analysis.h"
 
 #include <gmock/gmock.h>
 

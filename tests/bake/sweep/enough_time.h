@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "bake/accuracy/sweep/run_sweep.h"
+#include "bake/lab/sweep/run_sweep.h"
 #include "tests/support/effects.h"
 
 namespace opaline::tests {

@@ -1,4 +1,4 @@
-#include "bake/accuracy/sweep/finest.h"
+#include "bake/lab/sweep/finest.h"
 
 #include <gtest/gtest.h>
 

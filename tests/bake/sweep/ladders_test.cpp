@@ -1,4 +1,4 @@
-#include "bake/accuracy/sweep/ladders.h"
+#include "bake/lab/sweep/ladders.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/effects.h"
 

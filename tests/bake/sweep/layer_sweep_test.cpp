@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bake/accuracy/sweep/analysis.h"
-#include "bake/accuracy/sweep/run_point.h"
-#include "bake/accuracy/sweep/tables.h"
-#include "bake/layers/plan_layers.h"
+#include "bake/effects/layers/plan_layers.h"
+#include "bake/lab/sweep/analysis.h"
+#include "bake/lab/sweep/run_point.h"
+#include "bake/lab/sweep/tables.h"
 #include "tests/bake/layers/layer_support.h"
 #include "tests/bake/sweep/enough_time.h"
 #include "tests/support/effects.h"

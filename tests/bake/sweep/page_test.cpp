@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "bake/accuracy/sweep/report_page.h"
-#include "bake/accuracy/sweep/tables.h"
+#include "bake/lab/sweep/report_page.h"
+#include "bake/lab/sweep/tables.h"
 #include "tests/support/effects.h"
 
 namespace opaline::bake {

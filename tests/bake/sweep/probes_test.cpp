@@ -1,4 +1,4 @@
-#include "bake/accuracy/sweep/probes.h"
+#include "bake/lab/sweep/probes.h"
 
 #include <gmock/gmock.h>
 

@@ -1,10 +1,10 @@
-#include "bake/accuracy/sweep/reference_ladder.h"
+#include "bake/lab/sweep/reference_ladder.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/accuracy/sweep/slopes.h"
+#include "bake/lab/sweep/slopes.h"
 #include "tests/support/media.h"
 
 namespace opaline::bake {

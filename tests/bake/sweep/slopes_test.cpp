@@ -1,4 +1,4 @@
-#include "bake/accuracy/sweep/slopes.h"
+#include "bake/lab/sweep/slopes.h"
 
 #include <gmock/gmock.h>
 

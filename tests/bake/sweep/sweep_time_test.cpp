@@ -4,9 +4,9 @@
 #include <chrono>
 #include <thread>
 
-#include "bake/accuracy/sweep/run_sweep.h"
-#include "bake/accuracy/sweep/time_limit.h"
 #include "bake/base/stage_log.h"
+#include "bake/lab/sweep/run_sweep.h"
+#include "bake/lab/sweep/time_limit.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
 

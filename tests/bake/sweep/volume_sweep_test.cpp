@@ -3,10 +3,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bake/accuracy/sweep/analysis.h"
-#include "bake/accuracy/sweep/tables.h"
-#include "bake/volumes/plan_volumes.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/plan_volumes.h"
+#include "bake/effects/volumes/volume_knobs.h"
+#include "bake/lab/sweep/analysis.h"
+#include "bake/lab/sweep/tables.h"
 #include "tests/bake/sweep/enough_time.h"
 #include "tests/support/effects.h"
 #include "tests/support/volumes.h"

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "bake/effects/transmission/view_fit.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/gauss_legendre.h"
 #include "tests/bake/transmission/straight_body.h"
 
 namespace opaline::bake {

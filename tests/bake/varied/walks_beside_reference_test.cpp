@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "tests/bake/varied/varied_body.h"
 
 namespace opaline::tests {

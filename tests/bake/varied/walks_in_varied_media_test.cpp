@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "bake/scattering/scattering_color.h"
+#include "bake/physics/scattering_color.h"
 #include "formats/image/srgb.h"
 #include "tests/bake/varied/varied_body.h"
 

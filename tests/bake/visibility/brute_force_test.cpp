@@ -5,7 +5,7 @@
 #include <random>
 
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/bake/visibility/white_sky.h"

@@ -1,4 +1,4 @@
-#include "bake/transport/hidden_receivers.h"
+#include "bake/trace/hidden_receivers.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"
 

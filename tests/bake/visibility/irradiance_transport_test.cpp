@@ -1,4 +1,4 @@
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "bake/transport/ray_scene.h"
+#include "bake/trace/ray_scene.h"
 #include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"
 

@@ -5,7 +5,7 @@
 
 #include "bake/receivers/kd_order.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "bake/transport/touching_triangles.h"
+#include "bake/trace/touching_triangles.h"
 
 #include <gtest/gtest.h>
 

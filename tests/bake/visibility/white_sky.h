@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/transport/irradiance_transport.h"
+#include "bake/trace/irradiance_transport.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/scenes.h"
 

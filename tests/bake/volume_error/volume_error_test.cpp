@@ -1,11 +1,11 @@
-#include "bake/accuracy/volumes/volume_error.h"
+#include "bake/check/volumes/volume_error.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bake/accuracy/volumes/see_through.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/check/volumes/see_through.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 #include "tests/support/scenes.h"
 

@@ -1,4 +1,4 @@
-#include "bake/accuracy/volumes/volume_probes.h"
+#include "bake/check/volumes/volume_probes.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/volumes/node_albedo.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/node_albedo.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "formats/media/split_absorption.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/bake/volumes/volume_support.h"

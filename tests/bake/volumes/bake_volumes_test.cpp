@@ -1,11 +1,11 @@
-#include "bake/volumes/bake_volumes.h"
+#include "bake/effects/volumes/bake_volumes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
 
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 #include "tests/support/scenes.h"
 

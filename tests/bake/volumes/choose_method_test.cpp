@@ -1,4 +1,4 @@
-#include "bake/volumes/choose_method.h"
+#include "bake/effects/volumes/choose_method.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/lit_space.h"
 
 namespace opaline::bake {

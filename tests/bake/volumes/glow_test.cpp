@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/effects/volumes/glow_walks.h"
+#include "bake/effects/volumes/largest_light.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "bake/plan/plan_input.h"
-#include "bake/volumes/glow_walks.h"
-#include "bake/volumes/largest_light.h"
-#include "bake/volumes/volume_knobs.h"
 #include "formats/opal/half.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/bake/volumes/volume_support.h"

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
-#include "bake/volumes/bake_glow.h"
-#include "bake/volumes/fit_nodes.h"
-#include "bake/volumes/place_nodes.h"
+#include "bake/effects/volumes/bake_glow.h"
+#include "bake/effects/volumes/fit_nodes.h"
+#include "bake/effects/volumes/place_nodes.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_march.h"
 #include "tests/bake/volumes/volume_support.h"

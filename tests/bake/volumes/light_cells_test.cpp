@@ -1,4 +1,4 @@
-#include "bake/transport/density/attenuation.h"
+#include "bake/trace/density/attenuation.h"
 
 #include <gtest/gtest.h>
 

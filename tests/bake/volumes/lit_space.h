@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bake/volumes/volume_walks.h"
+#include "bake/effects/volumes/volume_walks.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::tests {

@@ -2,8 +2,8 @@
 
 #include <array>
 
-#include "bake/volumes/node_lattice.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/node_lattice.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {

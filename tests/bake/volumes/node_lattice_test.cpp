@@ -1,4 +1,4 @@
-#include "bake/volumes/node_lattice.h"
+#include "bake/effects/volumes/node_lattice.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/volumes/node_rows.h"
+#include "bake/effects/volumes/node_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/volumes/phase_table.h"
+#include "bake/effects/volumes/phase_table.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/phase.h"
-#include "bake/transport/density/scaled_phase.h"
+#include "bake/physics/phase.h"
+#include "bake/trace/density/scaled_phase.h"
 #include "formats/opal/phase_table.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/support/cut_phase.h"

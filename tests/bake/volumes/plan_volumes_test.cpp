@@ -1,13 +1,13 @@
-#include "bake/volumes/plan_volumes.h"
+#include "bake/effects/volumes/plan_volumes.h"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "bake/transport/density/scaled_phase.h"
-#include "bake/volumes/largest_light.h"
-#include "bake/volumes/volume_knobs.h"
-#include "bake/volumes/volume_work.h"
+#include "bake/effects/volumes/largest_light.h"
+#include "bake/effects/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_work.h"
+#include "bake/trace/density/scaled_phase.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {

@@ -1,5 +1,5 @@
 // Light that volumes scatter to surfaces, at points.
-#include "bake/volumes/sent_light.h"
+#include "bake/effects/volumes/sent_light.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "bake/base/frame.h"
-#include "bake/volumes/largest_light.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/largest_light.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 #include "tests/support/scenes.h"
 

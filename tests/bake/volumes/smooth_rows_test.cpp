@@ -1,4 +1,4 @@
-#include "bake/volumes/smooth_rows.h"
+#include "bake/effects/volumes/smooth_rows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "bake/volumes/volume_parts.h"
+#include "bake/effects/volumes/volume_parts.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "bake/volumes/node_lattice.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/node_lattice.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/volumes/volume_paths.h"
+#include "bake/effects/volumes/volume_paths.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/phase_series.h"
+#include "bake/physics/phase_series.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "tests/bake/path_integral/path_support.h"
 #include "tests/bake/volumes/lit_space.h"

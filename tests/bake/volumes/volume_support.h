@@ -10,9 +10,9 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/effects.h"
-#include "bake/transport/ray_scene.h"
-#include "bake/volumes/bake_volumes.h"
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/bake_volumes.h"
+#include "bake/effects/volumes/volume_knobs.h"
+#include "bake/trace/ray_scene.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/support/volumes.h"

@@ -1,4 +1,4 @@
-#include "bake/volumes/volume_walks.h"
+#include "bake/effects/volumes/volume_walks.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {

@@ -1,15 +1,15 @@
-#include "bake/volumes/volume_work.h"
+#include "bake/effects/volumes/volume_work.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "bake/transport/density/attenuation.h"
-#include "bake/transport/density/density_space.h"
-#include "bake/volumes/node_lattice.h"
-#include "bake/volumes/volume_knobs.h"
-#include "bake/volumes/walk_parts.h"
+#include "bake/effects/volumes/node_lattice.h"
+#include "bake/effects/volumes/volume_knobs.h"
+#include "bake/effects/volumes/walk_parts.h"
+#include "bake/trace/density/attenuation.h"
+#include "bake/trace/density/density_space.h"
 #include "tests/bake/volumes/volume_support.h"
 
 namespace opaline::bake {

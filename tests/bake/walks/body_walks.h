@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "bake/effects/multiple/walks/walk.h"
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/gauss_legendre.h"
 #include "tests/support/media.h"
 
 namespace opaline::tests {

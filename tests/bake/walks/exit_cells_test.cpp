@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 

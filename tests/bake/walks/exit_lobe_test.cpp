@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "tests/bake/walks/body_walks.h"
 
 namespace opaline::bake {

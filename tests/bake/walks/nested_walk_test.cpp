@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/walks/nested_bodies.h"
 

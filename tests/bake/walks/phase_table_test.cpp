@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/scattering/phase.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::bake {

@@ -12,8 +12,8 @@
 
 #include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
+#include "bake/physics/fresnel.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/scattering/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 #include "tests/bake/walks/body_walks.h"

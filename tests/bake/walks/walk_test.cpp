@@ -8,8 +8,8 @@
 #include <numeric>
 
 #include "bake/effects/multiple/walks/view_fit.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/half_space_once.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/half_space_once.h"
 #include "tests/bake/walks/body_walks.h"
 #include "tests/support/doubled_slab.h"
 

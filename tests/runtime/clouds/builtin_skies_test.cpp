@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/environment/builtin_environment.h"
+#include "bake/lights/builtin_environment.h"
 #include "runtime/clouds/sky_light.h"
 
 // The lights that a command line names, as cloud layers take them.

@@ -4,13 +4,13 @@
 #include <numbers>
 #include <tuple>
 
-#include "bake/slab/low_orders.h"
-#include "bake/slab/solve_radiance.h"
+#include "bake/physics/slab/low_orders.h"
+#include "bake/physics/slab/solve_radiance.h"
 #include "runtime/clouds/see_layer.h"
 #include "runtime/texture.h"
 #include "tests/runtime/clouds/lit_layer.h"
 
-// An even layer is a plane slab: what is seen of it is known from the solvers of bake/slab.
+// An even layer is a plane slab: what is seen of it is known from the solvers of bake/physics/slab.
 
 namespace opaline::runtime {
 namespace {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/slab/low_orders.h"
+#include "bake/physics/slab/low_orders.h"
 #include "runtime/clouds/slab_source.h"
 #include "tests/support/cloud_layers.h"
 

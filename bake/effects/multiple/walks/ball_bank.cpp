@@ -8,7 +8,7 @@
 #include "bake/base/frame.h"
 #include "bake/base/ordered_parallel.h"
 #include "bake/effects/multiple/walks/walk.h"
-#include "bake/scattering/phase.h"
+#include "bake/physics/phase.h"
 
 namespace opaline::bake {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "bake/base/vector8.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/gauss_legendre.h"
 
 namespace opaline::bake {
 namespace {

@@ -3,7 +3,7 @@
 #include <glm/glm.hpp>
 
 #include "bake/effects/multiple/walks/walk.h"
-#include "bake/truth/true_irradiance.h"
+#include "bake/lights/true_irradiance.h"
 
 namespace opaline::bake {
 

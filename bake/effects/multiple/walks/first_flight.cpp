@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/effects/multiple/walks/find_hit.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
 namespace {

@@ -11,7 +11,7 @@
 #include "bake/base/frame.h"
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/effects/multiple/walks/site_rows.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "bake/effects/multiple/walks/walk.h"
 #include "bake/exchange/true_bounces.h"
+#include "bake/physics/fresnel.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/scattering/fresnel.h"
 
 namespace opaline::bake {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "bake/effects/multiple/walks/exit_lobe.h"
 #include "bake/effects/multiple/walks/walk_space.h"
+#include "bake/lights/luminance.h"
+#include "bake/lights/true_irradiance.h"
 #include "bake/receivers/receiver.h"
-#include "bake/transport/ray_scene.h"
-#include "bake/truth/luminance.h"
-#include "bake/truth/true_irradiance.h"
+#include "bake/trace/ray_scene.h"
 
 namespace opaline::bake {
 

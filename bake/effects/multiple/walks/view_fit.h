@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/gauss_legendre.h"
 
 namespace opaline::bake {
 

@@ -5,8 +5,8 @@
 #include <numbers>
 
 #include "bake/base/frame.h"
-#include "bake/scattering/fresnel.h"
-#include "bake/scattering/gauss_legendre.h"
+#include "bake/physics/fresnel.h"
+#include "bake/physics/gauss_legendre.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {

@@ -9,7 +9,7 @@
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/effects/multiple/walks/free_ball.h"
 #include "bake/effects/multiple/walks/medium_stack.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "bake/effects/multiple/walks/find_hit.h"
-#include "bake/scattering/fresnel.h"
+#include "bake/physics/fresnel.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

@@ -12,9 +12,9 @@
 #include "bake/effects/multiple/walks/ball_bank.h"
 #include "bake/effects/multiple/walks/medium_stack.h"
 #include "bake/scene/medium_field.h"
-#include "bake/transport/bodies_at.h"
-#include "bake/transport/clearance_grid.h"
-#include "bake/transport/embree_scene.h"
+#include "bake/trace/bodies_at.h"
+#include "bake/trace/clearance_grid.h"
+#include "bake/trace/embree_scene.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

@@ -1,0 +1,150 @@
+#include "bake/effects/volumes/volume_walks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "bake/effects/volumes/add_scattered.h"
+#include "bake/effects/volumes/walk_parts.h"
+#include "formats/opal/spherical_harmonics.h"
+#include "formats/opal/volumes.h"
+
+namespace opaline::bake {
+namespace {
+
+// One walk that follows the extinction of `band`, for the bands [first, end).
+struct Track {
+    std::size_t band = 0, first = 0, end = 1;
+};
+
+// Unscattered light of all directions below kDark is none; below kJoinsAlways it joins by chance.
+constexpr float kDark = 1e-6f, kJoinsAlways = 0.1f;
+
+// Adds to `sum` the light that is scattered into a walk where it collides.
+void add_light(const VolumeWalkSpace& walk, const Track& track, std::uint32_t volume, glm::vec3 at,
+               glm::vec3 direction, const std::array<float, 3>& weight, FlightRandom& random,
+               std::span<float> sum) {
+    const DensityVolume& own = walk.space.volumes[volume];
+    const NodesAround around = nodes_around(walk.lattices[volume], own.to_index * at + own.offset);
+    if (!around.found) return;
+    ScatteredLight light;
+    float most = 0;  // light from one direction; depths are interpolated, so it is no more
+    for (std::size_t i = 0; i < around.node.size(); ++i) {
+        if (around.node[i] == formats::kNoNode) {
+            return;  // a volume without nodes, or a point whose density has rounded to 0
+        }
+        const std::size_t node = walk.first[volume] + around.node[i];
+        const std::size_t band = walk.depths.bands == 1 ? 0 : track.band;
+        most += around.weight[i] * walk.depths.most[node * walk.depths.bands + band];
+        light.depth[i] = walk.depths.codes(node, band);
+        light.node_weight[i] = around.weight[i];
+    }
+    // Hardly any light joins deep inside, where most collisions are.
+    const float joins = std::min(most / kJoinsAlways, 1.0f);
+    if (most < kDark || (joins < 1 && random() >= joins)) return;
+    light.direction = direction;
+    light.phase = &own.phase.monomial;
+    for (std::size_t band = track.first; band < track.end; ++band) {
+        light.weight[band - track.first] = weight[band] / joins;
+    }
+    add_scattered(light, walk.cells, track.end - track.first,
+                  sum.data() + track.first * walk.cells.size());
+}
+
+// Follows one walk from a receiver and adds the light that it gathers to `sum`, bands times cells.
+std::uint64_t follow(const VolumeWalkSpace& walk, const WalkReceiver& receiver, const Track& track,
+                     glm::vec3 direction, FlightRandom& random, std::span<float> sum) {
+    std::uint64_t traced = 0;
+    glm::vec3 at = receiver.position;
+    std::array<float, 3> weight{1, 1, 1};
+    const bool is_coloured = !walk.space.is_grey;
+    for (std::uint32_t n = 0; n < kMostScatterings; ++n) {
+        // Tracks of one walk turn alike at their n-th collision, and fly as many mean free paths.
+        if (is_coloured) random.begin_event(3 * n);
+        const MetSurface met = find_surface(walk.rays, at, direction, traced);
+        const Collision hit =
+            sample_flight(walk.space, track.band, at, direction, met.distance, random);
+        if (!hit.happens) {
+            if (met.is_there() && receiver.sees_surfaces && walk.surfaces != nullptr) {
+                add_seen(*walk.surfaces,
+                         {at + met.distance * direction, met.normal, met.material, met.cosine},
+                         weight, track.first, track.end, sum);
+            }
+            break;
+        }
+        at += hit.distance * direction;
+        if (is_coloured) random.begin_event(3 * n + 1);
+        const DensityVolume& own = walk.space.volumes[hit.volume];
+        if (!survives(own.albedo_at(at), track.first, track.end, weight, random)) break;
+        if (receiver.sees_sky) {
+            add_light(walk, track, hit.volume, at, direction, weight, random, sum);
+        }
+        if (is_coloured) random.begin_event(3 * n + 2);
+        const SampledCosine sampled = turn_walk(own.phase, direction, random);
+        for (float& w : weight) {
+            w *= sampled.weight;
+        }
+    }
+    return traced;
+}
+
+void scale(std::span<float> values, float factor) {
+    for (float& value : values) {
+        value *= factor;
+    }
+}
+
+}  // namespace
+
+std::uint64_t gather_walks(const VolumeWalkSpace& walk, const WalkReceiver& receiver,
+                           std::span<float> out, std::span<float> odd) {
+    const std::size_t bands = walk.space.bands(), row = bands * walk.cells.size();
+    std::ranges::fill(out, 0.0f);
+    std::ranges::fill(odd, 0.0f);
+    std::vector<Track> tracks{{0, 0, bands}};
+    if (!walk.space.is_grey) {
+        tracks = {{0, 0, 1}, {1, 1, 2}, {2, 2, 3}};
+    }
+    std::vector<float> sum(row);
+    std::array<float, formats::kMaxHarmonics> view{1};
+    std::uint64_t traced = 0;
+    FlightRandom shift(walk.seed, RandomStage::volume_walk, receiver.node);
+    const float u = shift(), v = shift();
+    for (std::uint32_t i = 0; i < receiver.walks; ++i) {
+        const glm::vec3 direction = even_direction(i, receiver.walks, u, v);
+        std::ranges::fill(sum, 0.0f);
+        for (const Track& track : tracks) {
+            // Bands of one walk share its numbers, so that its noise has no colour.
+            FlightRandom random(walk.seed, RandomStage::volume_walk,
+                                (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
+            traced += follow(walk, receiver, track, direction, random, sum);
+        }
+        if (receiver.terms > 1) {
+            formats::eval_spherical_harmonics({direction.x, direction.y, direction.z},
+                                              std::span(view).first(receiver.terms));
+        }
+        for (std::uint32_t k = 0; k < receiver.terms; ++k) {
+            for (std::size_t j = 0; j < row; ++j) {
+                out[k * row + j] += view[k] * sum[j];
+            }
+            for (std::size_t j = 0; i % 2 == 1 && !odd.empty() && j < row; ++j) {
+                odd[k * row + j] += view[k] * sum[j];
+            }
+        }
+    }
+    const ScaledPhase& phase = walk.space.volumes[receiver.volume].phase;
+    const float share = receiver.terms == 1 ? 1.0f : 4 * std::numbers::pi_v<float>;
+    const std::uint32_t every_other = receiver.walks / 2;
+    for (std::uint32_t k = 0; k < receiver.terms; ++k) {
+        const float factor = share * scattered_harmonic(phase, k);
+        scale(out.subspan(k * row, row), factor / static_cast<float>(receiver.walks));
+        if (!odd.empty()) {
+            scale(odd.subspan(k * row, row), factor / static_cast<float>(every_other));
+        }
+    }
+    return traced;
+}
+
+}  // namespace opaline::bake

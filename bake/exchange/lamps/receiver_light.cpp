@@ -1,0 +1,72 @@
+#include "bake/exchange/lamps/receiver_light.h"
+
+#include <algorithm>
+#include <array>
+
+#include "bake/base/frame.h"
+#include "bake/base/rng.h"
+#include "bake/exchange/lamps/onward_ray.h"
+#include "bake/exchange/lamps/straight_light.h"
+#include "bake/trace/packet_lane.h"
+
+namespace opaline::bake {
+namespace {
+
+constexpr double kNear = 0.01;  // of the scene: a receiver's surface is not farther
+constexpr std::uint32_t kLeastGlowRays = 16;
+
+}  // namespace
+
+std::vector<glm::dvec3> receive_straight(const LampLight& light, const Receiver& receiver,
+                                         std::uint64_t key, std::uint64_t& rays) {
+    std::vector<glm::dvec3> total(light.sources.size(), glm::dvec3(0));
+    if (receiver.normal == glm::vec3(0)) return total;
+    add_caustics(light, receiver, total, rays);
+    for (std::size_t lamp = 0; lamp < total.size(); ++lamp) {
+        total[lamp] += straight_irradiance(light.rays, light.sources[lamp], receiver, light.samples,
+                                           rays, light.volumes);
+        if (lamp >= light.glow.size() || light.glow[lamp] == nullptr) continue;
+        const auto turn = random_uniform(light.seed, RandomStage::gather_rays, key,
+                                         ~static_cast<std::uint32_t>(lamp));
+        total[lamp] +=
+            glow_irradiance(*light.glow[lamp], light.rays, receiver,
+                            std::max(kLeastGlowRays, light.samples / 4), {turn[0], turn[1]}, rays);
+    }
+    return total;
+}
+
+void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
+                  std::uint64_t& rays) {
+    if (std::ranges::all_of(light.caustics, &ElementLight::empty)) return;
+    const ElementLayout& layout = *light.layout;
+    // Four rays down to the elements around the receiver: at a vertex some of those that meet
+    // there.
+    constexpr std::uint32_t kRays = 4;
+    RayPacket packet = rays_from(receiver.origin);
+    LaneMask lanes{};
+    const Frame frame = make_frame(receiver.normal);
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const glm::vec3 across(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, -1);
+        set_lane(packet, lanes, i, glm::normalize(frame.to_world(across)),
+                 static_cast<float>(kNear * light.sources.front().radius));
+    }
+    rays += kRays;
+    const PacketHits hits = light.rays.closest(lanes, packet);
+    std::array<std::size_t, kRays> elements{};
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const auto at = arrival_of(hits, i);
+        if (!at || glm::dot(at->normal, glm::dvec3(receiver.normal)) < 0.5) continue;
+        const std::size_t element = layout.element(at->side, at->weights);
+        if (element < layout.size()) elements[count++] = element;
+    }
+    for (std::size_t lamp = 0; lamp < light.caustics.size(); ++lamp) {
+        if (light.caustics[lamp].empty()) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+            total[lamp] += glm::dvec3(light.caustics[lamp].irradiance[elements[i]]) /
+                           static_cast<double>(count);
+        }
+    }
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,15 @@
+# Writes OUTPUT, a .cpp with the text of files as string views: -DFILES=NAME=PATH|NAME=PATH ...
+set(source "#include \"bake/lab/sweep/report_page.h\"\n\nnamespace opaline::bake {\n\n")
+string(REPLACE "|" ";" files "${FILES}")
+foreach(file IN LISTS files)
+    string(REGEX MATCH "^([A-Za-z]+)=(.*)$" matched "${file}")
+    set(name ${CMAKE_MATCH_1})
+    file(READ "${CMAKE_MATCH_2}" text)
+    if(text MATCHES "\\)opaline\"")
+        message(FATAL_ERROR "${CMAKE_MATCH_2} holds the end of a raw string")
+    endif()
+    string(APPEND source "extern const std::string_view ${name};\n"
+                         "const std::string_view ${name} = R\"opaline(${text})opaline\";\n\n")
+endforeach()
+string(APPEND source "}  // namespace opaline::bake\n")
+file(WRITE "${OUTPUT}" "${source}")

@@ -1,0 +1,69 @@
+#include "bake/physics/path_differentials/lobe.h"
+
+#include <cmath>
+
+namespace opaline::bake {
+namespace {
+
+LobePoint eval_power(double exponent, double q) {
+    const double n = exponent + 1, log_cosine = std::log1p(-q) / n;
+    const double per_share = exponent == 0 ? 1 : std::exp(-exponent * log_cosine);  // c / (1 - q)
+    return {.cosine = std::exp(log_cosine),
+            .square_sine_over_q = q > 0 ? -std::expm1(2 * log_cosine) / q : 2 / n,
+            .dcosine = -per_share / n,
+            .dln_pdf = -exponent / (n * (1 - q))};
+}
+
+/// [Henyey1941], inverted without division by g: q runs from the forward direction.
+LobePoint eval_henyey_greenstein(double g, double q) {
+    const double k = 1 - 2 * q, a = 1 + g * k, a2 = a * a;
+    const double narrow = (1 - g) * (1 - g), wide = (1 + g) * (1 + g);
+    const double per_q = narrow * (2 + g + g * k) / a2;                // (1 - c) / q
+    const double one_plus = wide * (1 - q) * (2 - g + g * k) / a2;     // 1 + c
+    const double one_minus = per_q * q, product = narrow * wide / a2;  // (1 - g^2)^2 / a^2
+    return {.cosine = one_minus < 1 ? 1 - one_minus : one_plus - 1,
+            .square_sine_over_q = per_q * one_plus,
+            .dcosine = -2 * product / a,
+            .dln_pdf = -6 * g / a};
+}
+
+LobePoint eval_cap(double height, double q) {
+    return {.cosine = 1 - height * q,
+            .square_sine_over_q = height * (2 - height * q),
+            .dcosine = -height,
+            .dln_pdf = 0};
+}
+
+}  // namespace
+
+LobePoint eval_lobe(const Lobe& lobe, double q) {
+    switch (lobe.kind) {
+        case Lobe::Kind::power:
+            return eval_power(lobe.parameter, q);
+        case Lobe::Kind::henyey_greenstein:
+            return eval_henyey_greenstein(lobe.parameter, q);
+        case Lobe::Kind::cone:
+            return eval_cap(1 - lobe.parameter, q);
+        case Lobe::Kind::cap:
+            break;
+    }
+    return eval_cap(lobe.parameter, q);
+}
+
+LobeDirection sample_lobe(const Lobe& lobe, double u, double v) {
+    const DiskPoint disk = map_to_disk(u, v);
+    const LobePoint at = eval_lobe(lobe, disk.q);
+    const double stretch = std::sqrt(at.square_sine_over_q);  // sine over radius, finite at q = 0
+    const glm::dvec2 e = disk.outward, across(-e.y, e.x);
+    const auto column = [&](const DiskColumn& by) {
+        const double dsine = -2 * at.cosine * at.dcosine * by.radial / stretch;
+        return glm::dvec3(stretch * by.tangential * across + dsine * e, at.dcosine * by.dq);
+    };
+    return {.D = glm::dvec3(stretch * disk.radius * e, at.cosine),
+            .dD_du = column(disk.du),
+            .dD_dv = column(disk.dv),
+            .dln_pdf_du = at.dln_pdf * disk.du.dq,
+            .dln_pdf_dv = at.dln_pdf * disk.dv.dq};
+}
+
+}  // namespace opaline::bake

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "bake/base/context.h"
+#include "bake/receivers/receiver.h"
+#include "bake/trace/ray_scene.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// Every one of 16 probe rays over the hemisphere meets the back of a single-sided triangle first.
+bool is_hidden(const RayScene& rays, const Receiver& receiver);
+
+/// Vertices inside a closed body are black, such as floor vertices under a statue. Interpolation
+/// would spread the black over the visible parts of their triangles. A hidden vertex therefore
+/// gathers at the origin of its nearest visible neighbour, with its own normal. A hidden vertex
+/// without a visible neighbour stays as it is, because no visible point depends on it.
+///
+/// Neighbours are joined by an edge within the same primitive.
+/// `receivers`: one per vertex of the scene, in order.
+std::vector<Receiver> replace_hidden_receivers(const RayScene& rays, const formats::Scene& scene,
+                                               std::vector<Receiver> receivers,
+                                               const Context& context);
+
+}  // namespace opaline::bake
