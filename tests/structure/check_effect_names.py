@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 """Checks that bake/ knows of an effect in its own folder and in the table alone: check_effect_names.py ROOT.
 
-The effects are the folders of bake/effects/. Elsewhere in bake/, comments and prose (a string of several words) aside:
+The effects are folders of bake/effects/. Elsewhere in bake/, comments and prose (a string of several words) aside:
   - no file and no identifier is called NAME or has NAME as a word of its own (kSingle, SingleBatch, add_single), except
     identifiers of a header of formats/ or runtime/ that the file includes (TermSet::single, material.gloss);
   - no string is NAME, a part of it ("single.terms") or a list with it ("multiple,single");
   - no header of the effect's folder is included.
 What stands outside bake/ (the format, the runtime, tests) may name effects.
 
-Effects of volumes, cloud layers and emitters are no folders: each name is a constant (std::string_view kNAME = "...") of a header
+Effects of volumes, cloud layers and emitters have no folder each: a name is a constant (std::string_view kNAME = "...") of a header
 named *_effects.h or plan_*.h in its room. These rooms and the pipeline write the name itself nowhere else.
 """
 
@@ -21,6 +21,7 @@ from check_rooms import INCLUDE, included_file
 from source_files import source_files
 
 EFFECTS = Path("bake/effects")
+NO_EFFECTS = {"volumes", "layers", "emitters", "rows"}  # subjects of their own, and effects at work
 SUBJECT_ROOMS = ["bake/effects/volumes", "bake/effects/layers", "bake/exchange/lamps", "bake/effects/emitters"]
 CONSTANT = re.compile(r'constexpr std::string_view k\w+ = "([^"]+)";')
 TABLE = EFFECTS / "effects.h", EFFECTS / "effects.cpp"
@@ -126,7 +127,7 @@ def faults_of_subjects(root):
 
 def main():
     root = Path(sys.argv[1])
-    names = sorted(path.name for path in (root / EFFECTS).glob("*/"))
+    names = sorted(path.name for path in (root / EFFECTS).glob("*/") if path.name not in NO_EFFECTS)
     if not names:
         print("SKIPPED: there is no folder in bake/effects")
         return

@@ -2,7 +2,7 @@
 """Checks that includes between the rooms of bake/, formats/ and runtime/ go one way: check_rooms.py ROOT [ROOMS].
 
 rooms.txt lists the rooms from the lowest to the highest. Because a room includes earlier ones alone,
-the graph has no circle.
+the graph has no circle. Between the folders of bake/ go fewer than MOST_ARROWS arrows.
 """
 
 import os
@@ -13,6 +13,7 @@ from pathlib import Path
 from source_files import source_files
 
 FOLDERS = ["formats", "runtime", "bake"]
+MOST_ARROWS = 90  # one for each pair of folders of bake/ of which one includes the other
 INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 
 
@@ -71,11 +72,25 @@ def faults(root, rooms):
             yield f"{room} is listed and has no file"
 
 
+def arrows(root):
+    """Pairs of folders of bake/, the first of which includes the second."""
+    pairs = set()
+    for file in source_files(root, ["bake"]):
+        for name in INCLUDE.findall((root / file).read_text()):
+            target = included_file(root, file, name)
+            if target is not None and target.parts[0] == "bake" and target.parts[1] != file.parts[1]:
+                pairs.add((file.parts[1], target.parts[1]))
+    return pairs
+
+
 def main():
     root = Path(sys.argv[1])
     rooms = read_rooms(Path(sys.argv[2]) if len(sys.argv) > 2 else Path(__file__).parent / "rooms.txt")
     found = list(faults(root, rooms))
-    print("\n".join(found) or f"{len(rooms)} rooms, every include goes down")
+    count = len(arrows(root))
+    if count >= MOST_ARROWS:
+        found.append(f"{count} arrows between the folders of bake/, not fewer than {MOST_ARROWS}")
+    print("\n".join(found) or f"{len(rooms)} rooms, {count} arrows between folders of bake/, every include goes down")
     sys.exit(1 if found else 0)
 
 

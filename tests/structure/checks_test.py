@@ -37,6 +37,13 @@ class Rooms(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("bake/high/b.cpp: bake/high may not include bake/low/a.h", output)
 
+    def test_many_arrows_are_found(self):
+        names = [f"r{i:02}" for i in range(15)]
+        tree = {f"bake/{name}/a.h": "".join(f'#include "bake/{low}/a.h"\n' for low in names[:i]) for i, name in enumerate(names)}
+        code, output = self.check("\n".join(f"bake/{name}" for name in names), tree)
+        self.assertEqual(code, 1)
+        self.assertIn("105 arrows between the folders of bake/", output)
+
     def test_include_relative_to_the_file_is_found(self):
         tree = {"bake/low/a.h": '#include "../high/b.h"\n', "bake/high/b.h": ""}
         self.assertEqual(self.check("bake/low\nbake/high", tree)[0], 1)
