@@ -20,7 +20,8 @@ cmake --preset asan -B "$build" -DOPALINE_FAST_BUILD=OFF -DOPALINE_BUILD_TESTS=O
 changed=()
 while read -r path; do
     grep -qF "\"$root/$path\"" "$build/compile_commands.json" && changed+=("$path")
-done < <(git diff --numstat --no-renames --diff-filter=d "$base" HEAD -- 'bake/*.cpp' 'formats/*.cpp' 'runtime/*.cpp' |
+done < <(git diff --numstat --find-renames --diff-filter=d "$base" HEAD -- 'bake/*.cpp' 'formats/*.cpp' 'runtime/*.cpp' |
+    sed -E 's/\{[^}]* => ([^}]*)\}/\1/; s/\t[^\t]* => /\t/; s#//#/#' | # of a file that moved, its name now
     awk '{ print $1 + $2, $3 }' | sort -rn | cut -d' ' -f2)
 chosen=("${changed[@]:0:$most_files}")
 echo "clang-tidy: lines changed since ${base:0:10} in ${#chosen[@]} of ${#changed[@]} sources: ${chosen[*]}"
