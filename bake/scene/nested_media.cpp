@@ -192,8 +192,8 @@ void add_indirect(SceneFacts& facts) {
     }
 }
 
-// Whether some of the surface lies inside of other bodies of the same material: just outside of a
-// triangle is then inside of one. Looks at some triangles of each shell.
+// Whether some of the surface lies inside of other bodies of the same material or against them:
+// just outside of a triangle is then inside of one. Looks at some triangles of each shell.
 bool overlaps_itself(const Surface& surface, double size) {
     constexpr std::uint32_t kMostPoints = 256;
     constexpr double kOutside = 1e-4;      // of the size: clear of rounding

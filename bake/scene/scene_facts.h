@@ -78,7 +78,7 @@ struct MaterialFacts {
 
     std::vector<InnerMedium> inner;  ///< of a medium: others that light inside it may come to
     bool is_buried = false;          ///< a medium all of whose surface lies inside others
-    bool overlaps = false;           ///< a medium some of whose bodies reach into others of it
+    bool overlaps = false;           ///< a medium whose bodies reach into others of it or touch
 
     bool is_grey = false;  ///< a medium or sheet whose numbers, and those of media inside it, are
                            ///< the same in all three bands, everywhere

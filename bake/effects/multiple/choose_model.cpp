@@ -170,7 +170,7 @@ PlanEntry decide_model(const PlanInput& input) {
     } else if (layered) {
         walk("it contains other media");
     } else if (input.subject.overlaps && effect.on) {
-        walk("bodies of it overlap, whose surfaces the dipole counts twice");
+        walk("bodies of it touch or overlap, whose hidden faces the dipole takes for surface");
     } else if (!effect.on) {
         entry.reason = "dipole: no light that scatters many times is simulated";
     } else if (is_too_peaked(medium, input.knobs)) {
