@@ -71,8 +71,8 @@ formats::Status pack_density(const formats::SparseGrid<float>& density, const st
     to_world[3] += glm::dvec4(world, 0);
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) {
-            record.to_world[static_cast<std::size_t>(4 * row + column)] =
-                static_cast<float>(to_world[column][row]);
+            const auto place = 4 * static_cast<std::size_t>(row) + static_cast<std::size_t>(column);
+            record.to_world[place] = static_cast<float>(to_world[column][row]);
         }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
