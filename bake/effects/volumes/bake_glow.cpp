@@ -139,8 +139,9 @@ void smooth(const ScatteringNodes& of, std::span<const NodePairs> pairs,
             std::span<const glm::vec3> odd, const Context& context,
             std::vector<glm::vec3>& scattered) {
     const std::uint32_t terms = of.layout.glow_terms;
+    const std::uint32_t every_other = of.layout.glow_walks / 2;
     const auto walks = static_cast<float>(of.layout.glow_walks),
-               odd_walks = static_cast<float>(of.layout.glow_walks / 2);
+               odd_walks = static_cast<float>(every_other);
     std::vector<WalkedNode> nodes(scattered.size() / terms);
     for (std::size_t i = 0; i < scattered.size(); ++i) {
         WalkedNode& node = nodes[i / terms];
