@@ -193,24 +193,22 @@ void add_indirect(SceneFacts& facts) {
 }
 
 // Whether some of the surface lies inside of other bodies of the same material or against them:
-// just outside of a triangle is then inside of one. Looks at some triangles of each shell.
+// just outside of a triangle is then inside of one. Looks at some triangles, evenly spaced.
 bool overlaps_itself(const Surface& surface, double size) {
-    constexpr std::uint32_t kMostPoints = 256;
+    constexpr std::size_t kMostLooked = 4096;
     constexpr double kOutside = 1e-4;      // of the size: clear of rounding
     constexpr std::uint32_t kFewest = 20;  // one of so many is inside: fewer are folds
+    const std::size_t step = 1 + surface.body.order.size() / kMostLooked;
     std::uint32_t looked = 0, inside = 0;
-    for (const BodyShell& shell : surface.body.shell) {
-        const std::uint32_t step = std::max(1u, shell.count / kMostPoints);
-        for (std::uint32_t i = 0; i < shell.count; i += step) {
-            const BodyTriangle& t = surface.body.triangle[surface.body.order[shell.first + i]];
-            const auto corner = corners(surface.body, t);
-            const glm::dvec3 area = area_vector(surface.body, t);
-            const double length = glm::length(area);
-            if (!(length > 0)) continue;
-            ++looked;
-            const glm::dvec3 middle = (corner[0] + corner[1] + corner[2]) / 3.0;
-            inside += is_inside(surface.tree, middle + kOutside * size / length * area) ? 1 : 0;
-        }
+    for (std::size_t i = 0; i < surface.body.order.size(); i += step) {
+        const BodyTriangle& t = surface.body.triangle[surface.body.order[i]];
+        const auto corner = corners(surface.body, t);
+        const glm::dvec3 area = area_vector(surface.body, t);
+        const double length = glm::length(area);
+        if (!(length > 0)) continue;
+        ++looked;
+        const glm::dvec3 middle = (corner[0] + corner[1] + corner[2]) / 3.0;
+        inside += is_inside(surface.tree, middle + kOutside * size / length * area) ? 1 : 0;
     }
     return inside * kFewest > looked;
 }

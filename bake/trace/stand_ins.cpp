@@ -101,7 +101,7 @@ std::vector<std::uint32_t> find_stand_ins(const formats::Scene& scene, const Sce
         is_own[material] = 1;
         const bool meets =
             std::ranges::any_of(inner, [](const InnerMedium& i) { return i.depth == 0; }) ||
-            bodies.has_faces_on_faces(scene, is_own);
+            facts.material[material].overlaps || bodies.has_faces_on_faces(scene, is_own);
         std::vector<OwnVertex> seen, hidden;
         std::uint32_t first = 0;
         for (const formats::Primitive& p : scene.primitives) {

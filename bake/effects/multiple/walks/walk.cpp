@@ -3,45 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
-#include "bake/base/frame.h"
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/effects/multiple/walks/free_ball.h"
 #include "bake/effects/multiple/walks/medium_stack.h"
+#include "bake/effects/multiple/walks/walk_boundary.h"
 #include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kForever = std::numeric_limits<float>::infinity();
-
-float transmittance(float cosine, float eta) {
-    return static_cast<float>(
-        fresnel_transmittance(static_cast<double>(cosine), static_cast<double>(eta)));
-}
-
-// Into the half space below both normals. Refracted by the smooth one; where that leads above the
-// facet, by the facet's.
-glm::vec3 start_direction(const WalkSpace& space, const WalkStart& start, WalkRandom& random) {
-    if (start.seen != glm::vec3(0)) return -start.seen;
-    float cosine = 1, azimuth = 0;
-    constexpr int kMostTries = 1000;  // one in a hundred is accepted at the most extreme index
-    for (int i = 0; i < kMostTries; ++i) {
-        cosine = std::sqrt(1 - random.next());
-        azimuth = 2 * kPi * random.next();
-        if (random.next() < transmittance(cosine, space.eta)) break;
-        cosine = 1;
-    }
-    const auto inside = static_cast<float>(
-        refracted_cosine(static_cast<double>(cosine), static_cast<double>(space.eta)));
-    const float sine = std::sqrt(std::max(0.0f, 1 - inside * inside));
-    const glm::vec3 tilted(sine * std::cos(azimuth), sine * std::sin(azimuth), -inside);
-    const glm::vec3 direction = make_frame(start.normal).to_world(tilted);
-    return glm::dot(direction, start.flat) < 0 ? direction
-                                               : make_frame(start.flat).to_world(tilted);
-}
 
 // Two indices of refraction between which light neither bends nor is reflected.
 bool is_matched(float ratio) {
@@ -273,28 +245,13 @@ class Walk {
         return hit.medium != 0 && hit.medium != kNoWalkMedium;
     }
 
-    // What lies beyond a surface that the walk has met.
-    struct Far {
-        MediumStack bodies;
-        float side = 1;  // where the triangle's normal points along the walk, else -1
-        float lift = 0;  // [m], clear of the surface
-        bool has_room = true, meets_other = false;
-    };
-
     bool arrive(const WalkHit& hit) {
         if (hit.medium == kNoWalkMedium) return meet();
         const float way = glm::distance(hit.position, position_);
         length_ += way;
         free_.set(hit.position, 0, 0);
-        Far far{bodies_, glm::dot(direction_, hit.flat) > 0 ? 1.0f : -1.0f, 2 * hit.error, true,
-                !hit.is_own};
-        if (space_.bodies) {
-            cross_all(hit, way, far);
-        } else if (far.side > 0) {
-            far.bodies.leave(hit.place);
-        } else {
-            far.has_room = far.bodies.enter(hit.place);
-        }
+        const FarSide far =
+            find_far_side(space_, bodies_, {position_, direction_, way}, hit, counts_.rays);
         if (!far.has_room) return give_up(counts_.buried);
         if (far.meets_other) {
             meet_other();
@@ -306,34 +263,7 @@ class Walk {
                                                                    : change_medium(hit, far);
     }
 
-    // Faces that lie on one another are crossed as one. Where there are several, at an edge, or
-    // where the walk leaves what it was not in, the bodies beyond are counted anew, in the middle
-    // of the way to the next surface.
-    void cross_all(const WalkHit& hit, float way, Far& far) {
-        constexpr float kAtEdge = 1e-4f, kGrazing = 0.1f;
-        const BodiesAt& bodies = *space_.bodies;
-        const float reach =
-            bodies.touch() / std::max(kGrazing, std::abs(glm::dot(direction_, hit.flat)));
-        const float back = std::min(0.5f * way, reach);
-        int met = 0;
-        bodies.visit_crossed(hit.position - back * direction_, direction_, back + reach,
-                             [&](std::uint32_t, bool) { ++met; });
-        const bool is_alone = met <= 1 && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) > kAtEdge;
-        if (is_alone &&
-            (far.side < 0 ? far.bodies.enter(hit.place) : far.bodies.leave(hit.place))) {
-            return;
-        }
-        far.meets_other = far.meets_other || met > 1;
-        far.lift = bodies.touch();
-        ++counts_.rays;
-        const glm::vec3 from = hit.position + reach * direction_;
-        WalkHit next;
-        far.bodies = find_hit(space_, from, direction_, kForever, next)
-                         ? bodies_around(space_, 0.5f * (from + next.position))
-                         : MediumStack();
-    }
-
-    bool pass(const WalkHit& hit, const Far& far) {
+    bool pass(const WalkHit& hit, const FarSide& far) {
         bodies_ = far.bodies;
         position_ = hit.position + far.side * far.lift * hit.flat;
         return true;
@@ -341,54 +271,31 @@ class Walk {
 
     // Light of one surface is either reflected or refracted, as Fresnel's reflectance says, with
     // unchanged weights.
-    bool change_medium(const WalkHit& hit, const Far& far) {
-        const float side = far.side;
+    bool change_medium(const WalkHit& hit, const FarSide& far) {
         const std::uint8_t beyond = space_.medium_at[far.bodies.top()];
         const float ratio = space_.media[beyond].eta / medium().eta;
         meet_other();
         if (!is_matched(ratio)) {
-            const glm::vec3 flat = side * hit.flat;
-            glm::vec3 refracted;
-            const auto bend = [&](glm::vec3 normal, float cosine) {
-                const auto beyond_cosine = static_cast<float>(
-                    refracted_cosine(static_cast<double>(cosine), static_cast<double>(ratio)));
-                refracted =
-                    glm::normalize((direction_ - cosine * normal) / ratio + beyond_cosine * normal);
-            };
-            // The smooth normal, unless it sends light to the wrong side of the triangle.
-            glm::vec3 normal = side * smooth_normal(space_, hit);
-            float cosine = glm::dot(direction_, normal);
-            const auto reflect_at = [&](glm::vec3 n) {
-                return direction_ - 2 * glm::dot(direction_, n) * n;
-            };
-            if (cosine > 0) {
-                bend(normal, std::min(1.0f, cosine));
-            }
-            if (!(cosine > 0) || glm::dot(reflect_at(normal), flat) >= 0 ||
-                glm::dot(refracted, flat) <= 0) {
-                normal = flat;
-                cosine = glm::dot(direction_, flat);
-                bend(normal, std::min(1.0f, cosine));
-            }
-            if (!(random_.next() < transmittance(std::min(1.0f, cosine), ratio))) {
+            const Bend bend = bend_at(space_, hit, far.side, direction_, ratio);
+            if (!(random_.next() < bend.passed)) {
                 is_reflected_ = true;
-                position_ = hit.position - far.lift * flat;
-                direction_ = glm::normalize(reflect_at(normal));
+                position_ = hit.position - far.side * far.lift * hit.flat;
+                direction_ = bend.reflected;
                 return true;
             }
-            direction_ = refracted;
+            direction_ = bend.refracted;
         }
         has_changed_ = true;
         weight_.enter(beyond);
         return pass(hit, far);
     }
 
-    bool arrive_at_boundary(const WalkHit& hit, const Far& far) {
+    bool arrive_at_boundary(const WalkHit& hit, const FarSide& far) {
         const glm::vec3 flat = far.side * hit.flat;
         const glm::vec3 normal =
             far.side > 0 ? inner_boundary_normal(space_, hit, direction_) : flat;
         const float cosine = std::min(1.0f, glm::dot(direction_, normal));
-        const float passed = transmittance(cosine, 1 / medium().eta);
+        const float passed = boundary_transmittance(cosine, 1 / medium().eta);
         const bool counts = scatterings_ >= orders_.least || is_straight_ ||
                             (scatterings_ > 0 && (is_reflected_ || has_changed_));
         if (passed > 0 && (counts || (orders_.marks_once && scatterings_ > 0))) {
