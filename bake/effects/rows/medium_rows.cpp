@@ -31,6 +31,39 @@ bool lets_cross(const EffectDescriptor& effect) {
     return effect.look_through != nullptr;
 }
 
+// Where light leaves at its entry, others than the effect that adds it scale its row.
+bool adds_light(const RowLayout& layout, const EffectDescriptor& effect) {
+    return effect.adds_other_light || (layout.at_entry && effect.add_at_entry != nullptr);
+}
+
+auto find_subject(const FinishedMedia& media, std::uint32_t material) {
+    return std::ranges::find(media.subjects, material, &SubjectState::material);
+}
+
+// Rows of points under other light than that of the file, by those effects that `counts` holds for.
+template <class Counts>
+std::vector<std::vector<float>> rows_under(const FinishedMedia& media, const MediumRequest& request,
+                                           SubjectState& own, Counts&& counts,
+                                           const Context& context, std::uint64_t& rays) {
+    BakeInputs lit = media.bake;
+    lit.light = &request.light;
+    Knobs knobs = media.knobs;
+    knobs.cubemap_size = request.cubemap_size;
+    std::vector<SubjectState> alone;
+    alone.push_back(std::move(own));
+    SubjectState& subject = alone.front();
+    settle_subjects(media.bake, media.plan, knobs, alone);
+    subject.layout = lit_layout(subject.layout);
+    auto rows = rows_of_some(
+        lit, knobs, context, subject,
+        {.material = request.material,
+         .outside = {request.outside.begin(), request.outside.end()},
+         .inside = {request.inside.begin(), request.inside.end()}},
+        [&](const EffectDescriptor& effect) { return counts(subject.layout, effect); }, rays);
+    own = std::move(subject);
+    return rows;
+}
+
 // What effects say at points of one medium.
 MediumRows ask_medium(const BakeInputs& bake, const Knobs& knobs, const Context& context,
                       SubjectState& own, const OtherLight& patches, const ReceiverSet& at,
@@ -38,10 +71,8 @@ MediumRows ask_medium(const BakeInputs& bake, const Knobs& knobs, const Context&
     const Knobs coarse = coarse_knobs(bake.effects, knobs, kBounceCubemap);
     BakeInputs lit = bake;
     lit.light = &patches;
-    // Where light leaves at its entry, others than the effect that adds it scale its row.
     const auto scatters = [&](const EffectDescriptor& effect) {
-        return !lets_cross(effect) &&
-               (effect.adds_other_light || (own.layout.at_entry && effect.add_at_entry != nullptr));
+        return !lets_cross(effect) && adds_light(own.layout, effect);
     };
     MediumRows rows{rows_of_some(lit, coarse, context, own, at, scatters, rays), {}, {}};
     for (std::size_t e = 0; e < own.effects.size(); ++e) {
@@ -124,24 +155,13 @@ RowLayout lit_layout(RowLayout layout) {
 std::vector<std::vector<float>> light_medium(const FinishedMedia& media,
                                              const MediumRequest& request, const Context& context,
                                              std::uint64_t& rays) {
-    const EffectTable& effects = media.bake.effects;
-    const auto own = std::ranges::find(media.subjects, request.material, &SubjectState::material);
+    const auto own = find_subject(media, request.material);
     if (own == media.subjects.end() ||
-        !takes_other_light(effects, entries_of(media.plan, request.material), own->layout)) {
+        !takes_other_light(media.bake.effects, entries_of(media.plan, request.material),
+                           own->layout)) {
         return {};
     }
-    BakeInputs lit = media.bake;
-    lit.light = &request.light;
-    Knobs knobs = media.knobs;
-    knobs.cubemap_size = request.cubemap_size;
-    std::vector<SubjectState> alone;
-    alone.push_back(std::move(*own));
-    settle_subjects(lit, media.plan, knobs, alone);
-    alone.front().layout = lit_layout(alone.front().layout);
-    auto rows =
-        rows_of_points(lit, knobs, context, alone.front(), request.outside, request.inside, rays);
-    *own = std::move(alone.front());
-    return rows;
+    return rows_under(media, request, *own, adds_light, context, rays);
 }
 
 bool lets_light_cross(const EffectTable& effects, std::span<const PlanEntry> decisions,
@@ -155,27 +175,16 @@ bool lets_light_cross(const EffectTable& effects, std::span<const PlanEntry> dec
 std::vector<std::vector<float>> light_through_medium(const FinishedMedia& media,
                                                      const MediumRequest& request,
                                                      const Context& context, std::uint64_t& rays) {
-    const EffectTable& effects = media.bake.effects;
-    const auto own = std::ranges::find(media.subjects, request.material, &SubjectState::material);
+    const auto own = find_subject(media, request.material);
     if (own == media.subjects.end() ||
-        !lets_light_cross(effects, entries_of(media.plan, request.material), own->layout)) {
+        !lets_light_cross(media.bake.effects, entries_of(media.plan, request.material),
+                          own->layout)) {
         return {};
     }
-    BakeInputs lit = media.bake;
-    lit.light = &request.light;
-    Knobs knobs = media.knobs;
-    knobs.cubemap_size = request.cubemap_size;
-    std::vector<SubjectState> alone;
-    alone.push_back(std::move(*own));
-    settle_subjects(media.bake, media.plan, knobs, alone);
-    alone.front().layout = lit_layout(alone.front().layout);
-    auto rows = rows_of_some(lit, knobs, context, alone.front(),
-                             {.material = request.material,
-                              .outside = {request.outside.begin(), request.outside.end()},
-                              .inside = {request.inside.begin(), request.inside.end()}},
-                             lets_cross, rays);
-    *own = std::move(alone.front());
-    return rows;
+    const auto crosses = [](const RowLayout&, const EffectDescriptor& effect) {
+        return lets_cross(effect);
+    };
+    return rows_under(media, request, *own, crosses, context, rays);
 }
 
 }  // namespace opaline::bake

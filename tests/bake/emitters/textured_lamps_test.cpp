@@ -8,30 +8,8 @@
 namespace opaline::bake {
 namespace {
 
-// 512 x 512 squares of black and white, over a metre.
-std::uint32_t add_checker(formats::Scene& scene) {
-    constexpr std::uint32_t kSide = 512;
-    formats::Image8& image = scene.images.emplace_back(formats::Image8{kSide, kSide, {}});
-    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
-        const std::uint8_t value = (i % kSide + i / kSide) % 2 == 0 ? 255 : 0;
-        image.rgba.insert(image.rgba.end(), {value, value, value, 255});
-    }
-    for (formats::Primitive& p : scene.primitives) {
-        p.texcoord.clear();
-        for (const glm::vec3& at : p.position) {
-            p.texcoord.emplace_back(at.x, at.y);
-        }
-    }
-    return 0;
-}
-
-// A floor under a ceiling that glows and reflects nothing.
-formats::Scene floor_under_ceiling(float albedo) {
-    formats::Scene scene;
-    tests::add_surface(scene, tests::make_quad({0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 4), 0, 1);
-    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), albedo);
-    return scene;
-}
+using tests::add_checker;
+using tests::floor_under_ceiling;
 
 // Light that the ceiling gets back from the floor, by vertex.
 std::vector<double> returned_light(const formats::Scene& scene, bool is_filtered) {

@@ -110,4 +110,29 @@ struct LampWorld {
     std::vector<bake::ParticleLight> particles;
 };
 
+/// 512 x 512 squares of black and white, over a metre.
+inline std::uint32_t add_checker(Scene& scene) {
+    constexpr std::uint32_t kSide = 512;
+    formats::Image8& image = scene.images.emplace_back(formats::Image8{kSide, kSide, {}});
+    for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+        const std::uint8_t value = (i % kSide + i / kSide) % 2 == 0 ? 255 : 0;
+        image.rgba.insert(image.rgba.end(), {value, value, value, 255});
+    }
+    for (Primitive& p : scene.primitives) {
+        p.texcoord.clear();
+        for (const glm::vec3& at : p.position) {
+            p.texcoord.emplace_back(at.x, at.y);
+        }
+    }
+    return 0;
+}
+
+/// A floor under a ceiling that glows and reflects nothing.
+inline Scene floor_under_ceiling(float albedo) {
+    Scene scene;
+    add_surface(scene, make_quad({0, 0, 1}, {0, 1, 0}, {1, 0, 0}, 4), 0, 1);
+    add_surface(scene, make_quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}), albedo);
+    return scene;
+}
+
 }  // namespace opaline::tests
