@@ -246,6 +246,17 @@ struct EmitterGroup {
     std::vector<std::string> members;  ///< names of emitters, none in two groups or twice
 };
 
+/// A vertex that no file has: where the baker needs a receiver between those of a triangle.
+struct AddedVertex {
+    std::array<std::uint32_t, 3> corner{};  ///< of that triangle: vertices that the file has
+    std::array<float, 2> weight{};  ///< barycentric, of the second and the third; each in [0, 1],
+                                    ///< and so is what they leave to the first
+
+    std::array<float, 3> weights() const {
+        return {1.0f - weight[0] - weight[1], weight[0], weight[1]};
+    }
+};
+
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
 /// Vertices keep the original order: receivers and output rows use this numbering. Where NORMAL is
 /// missing and the faces of a vertex differ in their normals, copies of it follow on the last one;
@@ -266,6 +277,8 @@ struct Primitive {
     std::vector<float> alpha;          ///< of COLOR_0; empty or one per vertex, in [0, 1]
     std::vector<std::uint32_t> index;  ///< triangles, 3 per triangle, each < position.size();
                                        ///< counter-clockwise seen from outside
+    std::vector<AddedVertex> added;    ///< of the last vertices, so many (bake/refine); those
+                                       ///< before them are the file's
 };
 
 /// Sum of the areas of its triangles [m^2].

@@ -33,7 +33,8 @@ enum class RandomStage : std::uint32_t {
     gather_rays = 23,
     true_gather = 24,
     reference_group = 25,
-    volume_glow = 26
+    volume_glow = 26,
+    refine_probes = 27
 };
 
 /// Four random words, a pure function of the arguments. There is no state, so results do not depend

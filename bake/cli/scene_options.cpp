@@ -46,6 +46,20 @@ OptionValue folders(std::vector<std::filesystem::path>& to) {
             OptionValue::Count::repeated};
 }
 
+OptionValue refinement(bake::RefineChoice& choice) {
+    OptionValue length = number_above(choice.longest_edge, 0, 1e9);
+    return {[&choice, take = std::move(length.take)](const std::string& text) {
+        using Mode = bake::RefineChoice::Mode;
+        if (text == "auto" || text == "off") {
+            choice.mode = text == "auto" ? Mode::where_light_changes : Mode::off;
+            return std::string();
+        }
+        choice.mode = Mode::edges;
+        const std::string fault = take(text);
+        return fault.empty() ? fault : fault + ", nor `auto` nor `off`";
+    }};
+}
+
 std::string quality_help() {
     std::string text = "cube map size, coefficients:";
     for (const Quality quality :
@@ -162,6 +176,15 @@ void add_scene_options(const Command& command, SceneOptions& options) {
     command.add("--coefficients", "M", coefficients_or_all(options.bake.coefficients),
                 "wavelet coefficients kept per receiver in the mean over a mesh, 7 or more, or "
                 "`all`; default as the quality says");
+    options.bake.refine.mode = bake::RefineChoice::Mode::where_light_changes;
+    command.add("--refine", "auto|off|MAX_EDGE [auto]", refinement(options.bake.refine),
+                "receivers between the vertices of the scene: auto, where its light changes, such "
+                "as where shadows end; off, none; or where an edge is longer than so many metres. "
+                "They follow on the scene's own vertices in the file");
+    command.add("--max-receivers", "N", whole_number(options.bake.refine.max_receivers, 1, 1u << 30),
+                "where receivers are added, until there are so many; default: as many again as the "
+                "scene has at draft, 4000 at least, twice and 20000 at preview, 4 times and 80000 "
+                "at production");
     for (const bake::EffectDescriptor& effect : bake::all_effects().effects) {
         for (const bake::KnobSpec* knob : effect.knobs) {
             if (!knob->option.empty()) {

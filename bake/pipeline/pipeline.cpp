@@ -20,6 +20,7 @@
 #include "bake/pipeline/layer_stages.h"
 #include "bake/pipeline/plan_scene.h"
 #include "bake/pipeline/provenance.h"
+#include "bake/pipeline/refine_stage.h"
 #include "bake/pipeline/row_stages.h"
 #include "bake/pipeline/shared_light.h"
 #include "bake/pipeline/volume_stages.h"
@@ -227,8 +228,12 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
 
     const OrientedBodies bodies =
         run_stage(log, "bodies", [&](std::uint64_t&) { return orient_bodies(given); });
-    const formats::Scene& facing = bodies.scene ? *bodies.scene : given;
+    const formats::Scene& turned = bodies.scene ? *bodies.scene : given;
     result.warnings = describe_faults(given, bodies.surfaces);
+    const formats::Result<RefinedScene> refined = refine_for_bake(turned, wanted, context, log);
+    if (!refined) return refined.error();
+    result.refinement = refined->report;
+    const formats::Scene& facing = refined->scene ? *refined->scene : turned;
     const auto evened = takes_even_media(effects, wanted) ? even_media(facing) : std::nullopt;
     if (evened) {
         std::ranges::copy(evened->warnings, std::back_inserter(result.warnings));

@@ -10,6 +10,7 @@
 #include "bake/check/volumes/volume_error.h"
 #include "bake/effects/layers/layer_error.h"
 #include "bake/pipeline/choose_knobs.h"
+#include "bake/refine/refine_scene.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {
@@ -27,6 +28,7 @@ struct BakeResult {
     unsigned threads = 1;                ///< as used
     std::vector<PlanEntry> plan;         ///< as ScenePlan::entries, with what the stages found
     SceneFacts facts;                    ///< that the plan was decided from
+    RefineReport refinement;
     StageLog stages;
     ErrorReport error;
     std::optional<AccuracyReport> accuracy;         ///< where an error was asked for

@@ -166,6 +166,7 @@ formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptio
         [&](const auto& effect) { return effect.inside_media && is_wanted(knobs, effect.name); });
     knobs.simulate_all = options.simulate_all;
     knobs.check_model = options.check_model;
+    knobs.refine = options.refine;
     knobs.seed = options.seed;
     knobs.separate_terms = options.separate_terms;
     if (options.error != 0) {

@@ -32,6 +32,17 @@ struct KnobValues {
     void set(const KnobSpec& knob, double value);
 };
 
+/// Whether receivers are added between those of the scene (bake/refine).
+struct RefineChoice {
+    enum class Mode {
+        off,
+        where_light_changes,  ///< as far as the quality, or the target error, asks for
+        edges                 ///< all edges that are longer than longest_edge
+    } mode = Mode::off;
+    double longest_edge = 0;          ///< [m], > 0 for `edges`
+    std::uint64_t max_receivers = 0;  ///< of all meshes, where any are added; 0: as the quality
+};
+
 /// The user's options. 0 means: as the quality preset.
 struct BakeOptions {
     Quality quality = Quality::preview;
@@ -47,6 +58,7 @@ struct BakeOptions {
     bool simulate_all = false;  ///< every effect that concerns a subject, however little it
                                 ///< contributes, and no shortcut
     bool check_model = false;   ///< also measure the model's error against Monte Carlo
+    RefineChoice refine = {};
     std::uint64_t seed = 0;     ///< of everything random
     unsigned threads = 0;       ///< 0: one per core; never changes the result
 
@@ -65,6 +77,7 @@ struct Knobs {
     bool looks_inside_media = true;  ///< some effect that acts inside media is wanted
     bool simulate_all = false;
     bool check_model = false;
+    RefineChoice refine = {};
     std::uint64_t seed = 0;
     /// Relative RMS that model and numerical error may have together; 0: none, otherwise the pilot
     /// changes what the user did not give.

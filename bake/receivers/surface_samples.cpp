@@ -13,6 +13,7 @@
 #include "bake/base/ordered_parallel.h"
 #include "bake/receivers/kd_order.h"
 #include "bake/receivers/point_grid.h"
+#include "bake/receivers/smooth_lift.h"
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/vertex_receivers.h"
 
@@ -232,18 +233,6 @@ std::vector<float> centre_in_cells(const formats::Scene& scene, const AreaTable&
     return area;
 }
 
-// The offset from the facet to the smooth surface [Hanika2021]: the mean offset to the vertices'
-// tangent planes, counting those that the point lies below.
-glm::vec3 lift_to_smooth_surface(const Primitive& p, const SurfacePoint& c) {
-    glm::vec3 lift(0);
-    for (glm::length_t k = 0; k < 3; ++k) {
-        const std::uint32_t v = p.index[c.first_index + static_cast<std::uint32_t>(k)];
-        const float below = std::min(0.0f, glm::dot(c.position - p.position[v], p.normal[v]));
-        lift -= c.barycentric[k] * below * p.normal[v];
-    }
-    return lift;
-}
-
 }  // namespace
 
 SurfaceSample make_surface_sample(const Scene& scene, const SurfacePoint& c, float area) {
@@ -265,7 +254,7 @@ SurfaceSample make_surface_sample(const Scene& scene, const SurfacePoint& c, flo
     sample.normal = length > 0 && glm::dot(normal, c.normal) > 0 ? normal / length : c.normal;
     sample.receiver.normal = sample.normal;
     sample.receiver.origin =
-        c.position + lift_to_smooth_surface(p, c) + clearance_bound(c.position, extent) * c.normal;
+        c.position + lift_to_smooth_surface(p, c.first_index, c.barycentric, c.position) + clearance_bound(c.position, extent) * c.normal;
     return sample;
 }
 

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "bake/receivers/smooth_lift.h"
 #include "bake/scene/triangle.h"
 #include "bake/scene/weld.h"
 
@@ -168,7 +169,8 @@ std::vector<Receiver> make_vertex_receivers(const Scene& scene) {
         for (std::size_t v = 0; v < primitive.position.size(); ++v) {
             const glm::vec3 position = primitive.position[v];
             const glm::vec3 normal = primitive.normal[v];
-            Receiver receiver{position, normal};
+            const glm::vec3 lift = lift_of_vertex(primitive, static_cast<std::uint32_t>(v));
+            Receiver receiver{position + lift, normal};
             if (const auto it = fans.point.find(weld_key(position)); it != fans.point.end()) {
                 Clearance c = clearance[it->second];
                 if (!(c.cosine > kLeastClearance) &&

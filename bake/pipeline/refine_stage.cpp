@@ -1,0 +1,73 @@
+#include "bake/pipeline/refine_stage.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "bake/effects/emitters/plan_emitters.h"
+#include "bake/exchange/lamps/lamps.h"
+#include "bake/plan/effect.h"
+
+namespace opaline::bake {
+namespace {
+
+// What a quality asks for. Between receivers a file then errs by about as much as at them.
+struct Fineness {
+    double error;  // RefineLimits::error
+    double more;   // receivers that may be added, for each one given
+    std::uint64_t least_more;
+    double probes_per_receiver;
+    std::uint32_t cubemap_size;
+};
+constexpr std::array<Fineness, 4> kFineness{{{0.10, 1, 4000, 0.1, 8},
+                                             {0.06, 2, 20000, 0.1, 8},
+                                             {0.03, 4, 80000, 0.2, 16},
+                                             {0.02, 8, 200000, 0.2, 16}}};
+
+}  // namespace
+
+RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers) {
+    const RefineChoice& choice = knobs.refine;
+    const Fineness& fineness = kFineness[static_cast<std::size_t>(knobs.quality)];
+    RefineLimits limits;
+    limits.error = fineness.error;
+    if (knobs.error_target > 0) limits.error = 0.7 * knobs.error_target;
+    const auto more = static_cast<std::uint64_t>(fineness.more * static_cast<double>(receivers));
+    limits.most_added = std::max(more, fineness.least_more);
+    if (choice.max_receivers > 0) {
+        limits.most_added = choice.max_receivers - std::min(choice.max_receivers, receivers);
+    }
+    limits.probes_per_receiver = fineness.probes_per_receiver;
+    limits.cubemap_size = fineness.cubemap_size;
+    limits.longest_edge = choice.mode == RefineChoice::Mode::edges ? choice.longest_edge : 0;
+    limits.seed = knobs.seed;
+    return limits;
+}
+
+formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const Knobs& knobs,
+                                            const Context& context, StageLog& log) {
+    if (knobs.refine.mode == RefineChoice::Mode::off || scene.primitives.empty()) {
+        return RefinedScene{};
+    }
+    std::uint64_t receivers = 0;
+    for (const formats::Primitive& p : scene.primitives) {
+        receivers += p.position.size();
+    }
+    formats::Result<RayScene> rays = RayScene::build(scene, context.threads);
+    if (!rays) return std::move(rays).error();
+    std::vector<LampSources> lamps;
+    if (is_wanted(knobs, kEmitters)) {
+        for (const Lamp& lamp : list_lamps(scene)) {
+            lamps.push_back(make_lamp_sources(scene, lamp));
+        }
+    }
+    return run_stage(log, "refinement", [&](std::uint64_t& traced) {
+        RefinedScene found =
+            refine_scene(scene, *rays, lamps, refine_limits(knobs, receivers), context);
+        traced += found.report.rays;
+        return found;
+    });
+}
+
+}  // namespace opaline::bake

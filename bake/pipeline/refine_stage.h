@@ -1,0 +1,20 @@
+#pragma once
+
+#include "bake/base/context.h"
+#include "bake/base/stage_log.h"
+#include "bake/plan/knobs.h"
+#include "bake/refine/refine_scene.h"
+#include "formats/opal/result.h"
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// How far the knobs have receivers added to a scene of so many.
+RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers);
+
+/// The scene with the receivers that its light needs; of media whose bodies face outward.
+/// Errors: resource.
+formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const Knobs& knobs,
+                                            const Context& context, StageLog& log);
+
+}  // namespace opaline::bake

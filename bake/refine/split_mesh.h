@@ -1,0 +1,82 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <unordered_map>
+#include <vector>
+
+#include "formats/scene.h"
+
+namespace opaline::bake {
+
+/// A scene's triangles while their edges are halved. Each edge is halved in all triangles that
+/// share it, over seams, creases and primitives, so that no vertex ever lies on the edge of a
+/// triangle of which it is no corner: edges are pairs of places, not of vertices. Only the longest
+/// edge of a triangle is halved [Rivara1984]: no angle becomes smaller than half of the smallest
+/// one given. Meshes need not be manifold.
+class SplitMesh {
+  public:
+    struct Triangle {
+        std::uint32_t primitive = 0, first_index = 0;  ///< of the triangle given that it is part of
+        std::array<std::uint32_t, 3> corner{};         ///< vertices of the primitive, in its order
+        std::array<glm::vec3, 3> weight{};  ///< barycentric, of the corners in the triangle given
+        std::uint32_t depth = 0;            ///< how often halved
+    };
+    /// A halved triangle: what was (a, b, c), turned by `side` so that its longest edge comes
+    /// first, became `first`, (a, m, c), and `second`, (m, b, c), m being the edge's middle.
+    struct Half {
+        std::uint32_t first, second, side;
+    };
+
+    /// Triangles without area take no part. Keeps a copy of the scene.
+    explicit SplitMesh(const formats::Scene& scene);
+
+    const formats::Scene& scene() const { return scene_; }
+    /// The scene with all vertices and triangles; the mesh is empty then.
+    formats::Scene take();
+
+    std::uint32_t size() const { return static_cast<std::uint32_t>(triangles_.size()); }
+    const Triangle& operator[](std::uint32_t triangle) const { return triangles_[triangle]; }
+    /// [m^2]
+    double area(std::uint32_t triangle) const;
+    /// The side whose edge, from corner `side` to the next one, is longest; equal ones in a fixed
+    /// order.
+    std::uint32_t longest_side(std::uint32_t triangle) const;
+    double longest_edge(std::uint32_t triangle) const;  ///< [m]
+    /// Vertices added to all primitives.
+    std::uint64_t added() const { return added_; }
+
+    /// Halves a triangle, and others first as far as edges are shared. Edges no longer than the
+    /// given one's are left alone, so lengths that are far above rounding stay so. Appends what was
+    /// halved, in order, to `halves`.
+    void halve(std::uint32_t triangle, std::vector<Half>& halves);
+
+  private:
+    using Edge = std::uint64_t;  ///< two numbers of places, the smaller one first
+    struct Length {
+        double square;
+        Edge edge;
+
+        auto operator<=>(const Length&) const = default;
+    };
+
+    std::uint32_t place_of(std::uint32_t triangle, std::uint32_t side) const;
+    Length length_of(std::uint32_t triangle, std::uint32_t side) const;
+    void link(std::uint32_t triangle);
+    void unlink(std::uint32_t triangle, std::uint32_t side);
+    void halve_edge(Edge edge, std::vector<Half>& halves);
+    std::uint32_t add_vertex(const Triangle& triangle, std::uint32_t side, std::uint32_t place);
+
+    formats::Scene scene_;
+    std::vector<Triangle> triangles_;
+    std::uint32_t given_ = 0;                        ///< triangles at first
+    std::vector<std::vector<std::uint32_t>> place_;  ///< of each vertex of each primitive
+    std::vector<glm::vec3> position_;                ///< of each place [m]
+    std::unordered_map<Edge, std::uint32_t> first_;  ///< side 3 t + k of an edge's first triangle
+    std::vector<std::uint32_t> next_;                ///< of the same edge, by side
+    std::uint64_t added_ = 0;
+};
+
+}  // namespace opaline::bake
