@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "formats/image/image.h"
+#include "formats/opal/added_vertices.h"
 #include "formats/opal/preview_image.h"
 #include "formats/opal/result.h"
 #include "formats/opal/rgb.h"
@@ -244,17 +245,6 @@ struct Light {
 struct EmitterGroup {
     std::string name;                  ///< 1 to 255 bytes without control characters
     std::vector<std::string> members;  ///< names of emitters, none in two groups or twice
-};
-
-/// A vertex that no file has: where the baker needs a receiver between those of a triangle.
-struct AddedVertex {
-    std::array<std::uint32_t, 3> corner{};  ///< of that triangle: vertices that the file has
-    std::array<float, 2> weight{};  ///< barycentric, of the second and the third; each in [0, 1],
-                                    ///< and so is what they leave to the first
-
-    std::array<float, 3> weights() const {
-        return {1.0f - weight[0] - weight[1], weight[0], weight[1]};
-    }
 };
 
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.

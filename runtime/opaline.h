@@ -106,8 +106,9 @@ OPALINE_API opaline_status opaline_asset_load_with(const void* bytes, size_t siz
 /* NULL is fine. No other thread may be using the asset; lights made for it stay valid. */
 OPALINE_API void opaline_asset_release(opaline_asset* asset);
 
-/* Receivers: the vertices of all primitives, in the order of the source mesh. 0 for NULL.
-   Any thread, concurrently. */
+/* Receivers: the vertices of all primitives, in the order of the source mesh, and after those of
+   each primitive what the baker added (opaline_primitive_mesh). 0 for NULL. Any thread,
+   concurrently. */
 OPALINE_API uint32_t opaline_asset_receiver_count(const opaline_asset* asset);
 
 /* Side of the cube map that the light basis was made of. 0 for NULL. Any thread, concurrently. */
@@ -146,6 +147,34 @@ typedef struct opaline_primitive_shading {
 OPALINE_API opaline_status opaline_asset_primitive_shading(const opaline_asset* asset,
                                                            uint32_t index,
                                                            opaline_primitive_shading* shading);
+
+/* Where a vertex that the baker added lies: at weight[0] of the way from corner[0] to corner[1] and
+   weight[1] of that to corner[2], vertices of the same primitive that the source mesh has. */
+typedef struct opaline_added_vertex {
+    uint32_t corner[3];
+    float weight[2]; /* barycentric, of corner[1] and corner[2]; their sum is at most 1 */
+} opaline_added_vertex;
+
+/* A primitive's mesh as it was baked: of receiver_count vertices (opaline_primitive_info). The
+   baker adds vertices where the light changes between those of the source mesh, and divides
+   triangles there, so that values interpolate to shadows. A host draws this mesh, or its own one
+   with the values of the first vertices, which are its own, and without these shadows; or it
+   divides its own triangles as `added` says. Pointers are valid while the asset is. */
+typedef struct opaline_primitive_mesh {
+    size_t struct_size;      /* in: sizeof(opaline_primitive_mesh) */
+    const float* position;   /* [m], world: 3 a vertex */
+    const float* normal;     /* unit, or zero where the source has none: 3 a vertex */
+    const float* base_color; /* linear, without the texture: 3 a vertex */
+    const float* texcoord;   /* 2 a vertex; NULL: the asset has none */
+    const uint32_t* index;   /* 3 a triangle, counted from the primitive's first vertex */
+    uint32_t index_count;
+    uint32_t added_count; /* vertices at the end that the source mesh does not have */
+    const opaline_added_vertex* added;
+} opaline_primitive_mesh;
+
+/* Fills `mesh`. Any thread, concurrently. */
+OPALINE_API opaline_status opaline_asset_primitive_mesh(const opaline_asset* asset, uint32_t index,
+                                                        opaline_primitive_mesh* mesh);
 
 /* Emitters: lamps that are part of the asset, each baked by itself, so that they are switched,
    dimmed and coloured (opaline_light_set_emitter) without another bake. 0 for NULL, and where none

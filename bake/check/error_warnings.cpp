@@ -70,7 +70,11 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
             "", "primitive '" + scene.primitives[error.worst_between].name + "'",
             "the file errs by " + with_interval(error.between) + " between its vertices" + more +
                 "; most of that here",
-            "give it more vertices where shadows end and where things touch"));
+            knobs.refine.mode == RefineChoice::Mode::off
+                ? "let --refine add receivers where its light changes, or give it more vertices "
+                  "where shadows end and where things touch"
+                : "choose a finer --quality or a larger --max-receivers, so that more receivers "
+                  "are added"));
     }
     return warnings;
 }

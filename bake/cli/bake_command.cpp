@@ -45,7 +45,8 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
                    std::size_t warnings) {
     const std::size_t nodes = result.asset.volumes.node.size();
     std::string line = fmt::format(
-        "{}: {} receivers, {}{}, {}", printable(options.output), result.asset.position.size(),
+        "{}: {} receivers{}, {}{}, {}", printable(options.output), result.asset.position.size(),
+        result.refinement.added > 0 ? fmt::format(" ({} added)", result.refinement.added) : "",
         nodes > 0 ? fmt::format("{} nodes in volumes, ", nodes) : "",
         format_seconds(result.seconds_total), format_bytes(static_cast<double>(bytes)));
     if (result.error.receivers_checked > 0) {
@@ -176,9 +177,9 @@ int run(const BakeCommand& options) {
     };
     auto result =
         require(bake::run_bake(bake::all_effects(), imported.scene, knobs, context, extras));
+    const formats::Scene& baked = result.scene ? *result.scene : imported.scene;
     for (formats::Diagnostic& unmet : bake::describe_unmet(
-             {bake::all_effects(), imported.scene, result.facts, result.knobs, result.plan},
-             wanted)) {
+             {bake::all_effects(), baked, result.facts, result.knobs, result.plan}, wanted)) {
         result.warnings.push_back(std::move(unmet));
     }
     result.warnings = drop_said(std::move(result.warnings), warnings);
@@ -191,7 +192,7 @@ int run(const BakeCommand& options) {
     std::size_t next = 0;
     const bake::MachineRates machine = bake::find_machine_rates();
     const bake::CostRequest request{bake::all_effects(),
-                                    imported.scene,
+                                    baked,
                                     result.facts,
                                     result.knobs,
                                     machine.rates,
@@ -200,9 +201,8 @@ int run(const BakeCommand& options) {
     const bake::CostPrediction used = bake::predict_costs(request, result.plan);
     if (!options.report.empty()) {
         bake::predict_savings(request, result.plan);
-        const Expectation expected = expect(imported.scene, knobs, machine, options.extras, result);
-        require(
-            files[next++].write(make_report(imported.scene, result, expected, warnings, bytes)));
+        const Expectation expected = expect(baked, knobs, machine, options.extras, result);
+        require(files[next++].write(make_report(baked, result, expected, warnings, bytes)));
     }
     if (!options.depfile.empty()) {
         require(files[next].write(make_depfile(options.output, imported.scene.inputs)));

@@ -112,6 +112,7 @@ Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) 
                                       {"mesh", p.mesh},
                                       {"primitive", p.primitive},
                                       {"vertices", p.vertex_count},
+                                      {"vertices_added", view.added.of(info["primitives"].size())},
                                       {"triangles", p.index_count / 3},
                                       {"shading", shading_name(p.shading)},
                                       {"terms", p.terms},
@@ -310,8 +311,10 @@ int run(const InfoCommand& options) {
     for (std::size_t i = 0; i < view.primitives.size(); ++i) {
         const formats::PrimitiveRecord& p = view.primitives[i];
         fmt::print(
-            "  {:>3}  {:>8} vertices {:>8} triangles  {} term(s), {}{}{}{}{}{}{}\n", i,
-            p.vertex_count, p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
+            "  {:>3}  {:>8} vertices{} {:>8} triangles  {} term(s), {}{}{}{}{}{}{}\n", i,
+            p.vertex_count,
+            view.added.of(i) == 0 ? "" : fmt::format(" ({} added)", view.added.of(i)),
+            p.index_count / 3, p.terms, p.bands == 1 ? "grey" : "RGB",
             p.shading == formats::Shading::sheet ? ", thin-walled" : "",
             p.is_separate()
                 ? ", " + formats::term_names(formats::TermSet::separable, " and ") + " separate"

@@ -12,6 +12,7 @@
 #include "bake/effects/effects.h"
 #include "bake/pipeline/calibration/rates_cache.h"
 #include "bake/pipeline/plan_scene.h"
+#include "bake/pipeline/refine_stage.h"
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/cancel_flaps.h"
@@ -39,6 +40,17 @@ std::vector<formats::Diagnostic> describe_media_faults(const formats::Scene& sce
     return bake::describe_faults(scene, surfaces);
 }
 
+// A plan answers within seconds: large meshes are taken as they are, of which few receivers are
+// missing.
+bool is_quick_to_refine(const formats::Scene& scene) {
+    constexpr std::size_t kMost = 100000;
+    std::size_t vertices = 0;
+    for (const formats::Primitive& p : scene.primitives) {
+        vertices += p.position.size();
+    }
+    return vertices <= kMost;
+}
+
 int run(const PlanCommand& options) {
     const bake::EffectTable& effects = bake::all_effects();
     const auto wanted = parse_effects(options.scene);
@@ -48,9 +60,15 @@ int run(const PlanCommand& options) {
     bake::Context context;
     context.threads = options.scene.bake.threads;
     const unsigned threads = bake::thread_count(context);
+    bake::StageLog log;
+    const bake::RefinedScene refined =
+        is_quick_to_refine(imported.scene)
+            ? require(bake::refine_for_bake(imported.scene, knobs, context, log))
+            : bake::RefinedScene{};
+    const formats::Scene& dense = refined.scene ? *refined.scene : imported.scene;
     const auto evened =
-        bake::takes_even_media(effects, knobs) ? bake::even_media(imported.scene) : std::nullopt;
-    const formats::Scene& scene = evened ? evened->scene : imported.scene;
+        bake::takes_even_media(effects, knobs) ? bake::even_media(dense) : std::nullopt;
+    const formats::Scene& scene = evened ? evened->scene : dense;
     bake::ScenePlan plan = bake::plan_scene(effects, scene, knobs);
     require(bake::check_lamps(scene, plan.count_emitters(), bake::kEmitters));
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, plan.facts);
@@ -68,8 +86,9 @@ int run(const PlanCommand& options) {
     const bake::CostRequest request{effects, scene, plan.facts, budget, rates, threads};
     const bake::CostPrediction cost = bake::predict_costs(request, plan.entries);
     bake::predict_savings(request, plan.entries);
-    fmt::print("{}", options.json ? make_plan_json(budget, plan.entries, cost)
-                                  : make_plan_table(budget, plan.entries, cost, threads));
+    fmt::print("{}", options.json
+                         ? make_plan_json(budget, refined.report, plan.entries, cost)
+                         : make_plan_table(budget, refined.report, plan.entries, cost, threads));
     return kExitSuccess;
 }
 

@@ -90,6 +90,18 @@ std::uint32_t most_terms(const formats::Asset& asset) {
 
 }  // namespace
 
+namespace {
+
+Json refinement_json(const bake::RefineReport& refined) {
+    return {{"receivers_given", refined.given},
+            {"receivers_added", refined.added},
+            {"error_before", refined.error_before},
+            {"error_after", refined.error_after},
+            {"bounded", refined.is_bounded}};
+}
+
+}  // namespace
+
 std::string make_report(const formats::Scene& scene, const bake::BakeResult& result,
                         const Expectation& expected,
                         const std::vector<formats::Diagnostic>& warnings, std::uint64_t bytes) {
@@ -124,6 +136,9 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
         report["volume_trials"].push_back(
             {{"quality", bake::quality_name(trial.quality)}, {"error", trial.error}});
     }
+    if (result.refinement.given > 0) {
+        report["refinement"] = refinement_json(result.refinement);
+    }
     report["output"] = {{"bytes", bytes},
                         {"receivers", result.asset.position.size()},
                         {"terms", most_terms(result.asset)},
@@ -135,7 +150,8 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     return json_text(report);
 }
 
-std::string make_plan_json(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
+std::string make_plan_json(const bake::Knobs& knobs, const bake::RefineReport& refined,
+                           const std::vector<bake::PlanEntry>& plan,
                            const bake::CostPrediction& cost) {
     Json stages = Json::array();
     for (const bake::StageCost& stage : cost.stages) {
@@ -143,6 +159,7 @@ std::string make_plan_json(const bake::Knobs& knobs, const std::vector<bake::Pla
     }
     return json_text(Json{{"plan", plan_array(plan)},
                           {"knobs", bake::knobs_json(knobs)},
+                          {"refinement", refinement_json(refined)},
                           {"stages", std::move(stages)},
                           {"predicted_seconds_total", cost.seconds},
                           {"predicted_seconds_shared", cost.shared_seconds},
@@ -152,7 +169,8 @@ std::string make_plan_json(const bake::Knobs& knobs, const std::vector<bake::Pla
                           {"receivers", cost.receivers}});
 }
 
-std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
+std::string make_plan_table(const bake::Knobs& knobs, const bake::RefineReport& refined,
+                            const std::vector<bake::PlanEntry>& plan,
                             const bake::CostPrediction& cost, unsigned threads) {
     const std::string everything = "whole scene", rest = "the rest";
     std::size_t widest = everything.size(), widest_effect = rest.size();
@@ -194,6 +212,16 @@ std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::Pl
                     ? fmt::format(", which leaves {:.2f} % to the numerical error",
                                   100 * knobs.numerical_target())
                     : fmt::format(", more than the {:g} % asked for", 100 * knobs.error_target);
+        }
+        table += "\n";
+    }
+    if (refined.added > 0) {
+        table +=
+            fmt::format("receivers: {} of the scene and {} more", refined.given, refined.added);
+        if (refined.error_before > 0) {
+            table += fmt::format(
+                " where its light changes; between them it then errs by some {:.1f} %, not {:.1f}",
+                100 * refined.error_after, 100 * refined.error_before);
         }
         table += "\n";
     }

@@ -22,9 +22,11 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
 
 /// The plan as JSON: {"plan": [...], "stages": [...], ...}, and as a table for people, who read on
 /// how many `threads` it is for.
-std::string make_plan_json(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
+std::string make_plan_json(const bake::Knobs& knobs, const bake::RefineReport& refined,
+                           const std::vector<bake::PlanEntry>& plan,
                            const bake::CostPrediction& cost);
-std::string make_plan_table(const bake::Knobs& knobs, const std::vector<bake::PlanEntry>& plan,
+std::string make_plan_table(const bake::Knobs& knobs, const bake::RefineReport& refined,
+                            const std::vector<bake::PlanEntry>& plan,
                             const bake::CostPrediction& cost, unsigned threads);
 
 /// One rule in make format: `output: inputs`.

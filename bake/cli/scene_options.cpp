@@ -181,7 +181,8 @@ void add_scene_options(const Command& command, SceneOptions& options) {
                 "receivers between the vertices of the scene: auto, where its light changes, such "
                 "as where shadows end; off, none; or where an edge is longer than so many metres. "
                 "They follow on the scene's own vertices in the file");
-    command.add("--max-receivers", "N", whole_number(options.bake.refine.max_receivers, 1, 1u << 30),
+    command.add("--max-receivers", "N",
+                whole_number(options.bake.refine.max_receivers, 1, 1u << 30),
                 "where receivers are added, until there are so many; default: as many again as the "
                 "scene has at draft, 4000 at least, twice and 20000 at preview, 4 times and 80000 "
                 "at production");

@@ -108,6 +108,11 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
     for (const Image8& image : scene.images) {
         asset.images.push_back(to_preview(image));
     }
+    for (const Primitive& p : scene.primitives) {
+        asset.added.count.push_back(static_cast<std::uint32_t>(p.added.size()));
+        asset.added.vertex.insert(asset.added.vertex.end(), p.added.begin(), p.added.end());
+    }
+    if (asset.added.vertex.empty()) asset.added = {};
     asset.holes = pack_holes(scene, asset.images);
     asset.normal_maps = pack_normal_maps(scene);
     if (std::none_of(asset.gloss.begin(), asset.gloss.end(),

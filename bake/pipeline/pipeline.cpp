@@ -230,9 +230,12 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         run_stage(log, "bodies", [&](std::uint64_t&) { return orient_bodies(given); });
     const formats::Scene& turned = bodies.scene ? *bodies.scene : given;
     result.warnings = describe_faults(given, bodies.surfaces);
-    const formats::Result<RefinedScene> refined = refine_for_bake(turned, wanted, context, log);
-    if (!refined) return refined.error();
+    formats::Result<RefinedScene> refined = refine_for_bake(turned, wanted, context, log);
+    if (!refined) return std::move(refined).error();
     result.refinement = refined->report;
+    if (auto warning = describe_bound(refined->report)) {
+        result.warnings.push_back(std::move(*warning));
+    }
     const formats::Scene& facing = refined->scene ? *refined->scene : turned;
     const auto evened = takes_even_media(effects, wanted) ? even_media(facing) : std::nullopt;
     if (evened) {
@@ -299,6 +302,7 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         }
     }
     result.asset.provenance = make_provenance(scene, result);
+    result.scene = std::move(refined->scene);
     result.seconds_total = seconds_since(start);
     return result;
 }

@@ -29,6 +29,8 @@ struct BakeResult {
     std::vector<PlanEntry> plan;         ///< as ScenePlan::entries, with what the stages found
     SceneFacts facts;                    ///< that the plan was decided from
     RefineReport refinement;
+    std::optional<formats::Scene>
+        scene;  ///< with the receivers that were added; none were: nothing
     StageLog stages;
     ErrorReport error;
     std::optional<AccuracyReport> accuracy;         ///< where an error was asked for

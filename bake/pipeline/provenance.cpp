@@ -157,6 +157,11 @@ std::string make_provenance(const formats::Scene& scene, const BakeResult& resul
         root["error_requested"] = knobs.error_target;
     }
     root["knobs"] = knobs_json(knobs);
+    if (result.refinement.added > 0) {
+        root["refinement"] = {{"receivers_added", result.refinement.added},
+                              {"error_before", result.refinement.error_before},
+                              {"error_after", result.refinement.error_after}};
+    }
     root["plan"] = Json::array();
     for (const PlanEntry& entry : result.plan) {
         root["plan"].push_back({{"effect", entry.name},

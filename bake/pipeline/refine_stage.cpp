@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "bake/check/error_warnings.h"
 #include "bake/effects/emitters/plan_emitters.h"
 #include "bake/exchange/lamps/lamps.h"
 #include "bake/plan/effect.h"
@@ -45,8 +46,24 @@ RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers) {
     return limits;
 }
 
+std::optional<formats::Diagnostic> describe_bound(const RefineReport& report) {
+    // What errs by less passes unnoticed.
+    constexpr double kNoticed = 0.1;
+    if (!report.is_bounded || (report.error_before > 0 && report.error_after < kNoticed)) {
+        return std::nullopt;
+    }
+    const std::string left =
+        report.error_before > 0
+            ? "interpolation between them still errs by some " + error_percent(report.error_after)
+            : "some edges are longer than --refine says";
+    return formats::make_warning("", "refinement",
+                                 "the limit of " + std::to_string(report.given + report.added) +
+                                     " receivers is reached; " + left,
+                                 "give a larger --max-receivers, or a finer --quality");
+}
+
 formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const Knobs& knobs,
-                                            const Context& context, StageLog& log) {
+                                              const Context& context, StageLog& log) {
     if (knobs.refine.mode == RefineChoice::Mode::off || scene.primitives.empty()) {
         return RefinedScene{};
     }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "bake/base/context.h"
 #include "bake/base/stage_log.h"
 #include "bake/plan/knobs.h"
@@ -12,9 +14,12 @@ namespace opaline::bake {
 /// How far the knobs have receivers added to a scene of so many.
 RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers);
 
+/// A warning where the limit of receivers ended it; nothing where it did not.
+std::optional<formats::Diagnostic> describe_bound(const RefineReport& report);
+
 /// The scene with the receivers that its light needs; of media whose bodies face outward.
 /// Errors: resource.
 formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const Knobs& knobs,
-                                            const Context& context, StageLog& log);
+                                              const Context& context, StageLog& log);
 
 }  // namespace opaline::bake

@@ -48,7 +48,7 @@ struct RefinedScene {
 /// which no point lies stay as they are. The result is the same for any number of threads; a
 /// cancelled context leaves it incomplete. `lamps`: whose light counts.
 RefinedScene refine_scene(const formats::Scene& scene, const RayScene& rays,
-                        std::span<const LampSources> lamps, const RefineLimits& limits,
-                        const Context& context);
+                          std::span<const LampSources> lamps, const RefineLimits& limits,
+                          const Context& context);
 
 }  // namespace opaline::bake

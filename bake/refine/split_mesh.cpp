@@ -208,7 +208,7 @@ void SplitMesh::halve_edge(Edge edge, std::vector<Half>& halves) {
         next_.insert(next_.end(), 3, kNoSide);
         link(t);
         link(last);
-        halves.push_back({t, last, side});
+        halves.push_back({t, last, side, a, b, middle->vertex});
     }
 }
 

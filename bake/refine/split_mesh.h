@@ -28,6 +28,7 @@ class SplitMesh {
     /// first, became `first`, (a, m, c), and `second`, (m, b, c), m being the edge's middle.
     struct Half {
         std::uint32_t first, second, side;
+        std::uint32_t a, b, middle;  ///< vertices of the primitive
     };
 
     /// Triangles without area take no part. Keeps a copy of the scene.

@@ -23,6 +23,7 @@ AssetView Asset::view() const {
     view.openness = openness;
     view.gloss = gloss;
     view.holes = holes.view();
+    view.added = added.view();
     view.normal_maps = normal_maps.view();
     view.volumes = volumes.view();
     view.clouds = clouds.view();

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "formats/opal/added_vertices.h"
 #include "formats/opal/clouds.h"
 #include "formats/opal/emitters.h"
 #include "formats/opal/gloss_model.h"
@@ -112,6 +113,7 @@ struct AssetView {
     std::span<const Openness> openness;
     /// Gloss of opaque primitives: empty (none), or one per primitive; needs `openness`.
     std::span<const GlossRecord> gloss;
+    AddedVerticesView added;     ///< which vertices no scene file has
     HolesView holes;             ///< where opaque and thin-walled surfaces are not there
     NormalMapsView normal_maps;  ///< empty without any
     VolumesView volumes;         ///< smoke, clouds; empty without any
@@ -137,6 +139,7 @@ struct Asset {
     std::vector<float> roughness;    ///< empty, or one per primitive; kNotGlossy for opaque ones
     std::vector<Openness> openness;  ///< empty, or one per vertex; where `roughness` is not empty
     std::vector<GlossRecord> gloss;  ///< empty, or one per primitive; kNotGlossy if translucent
+    AddedVertices added;             ///< empty without any
     Holes holes;                     ///< empty without any
     NormalMaps normal_maps;          ///< empty without any
     Volumes volumes;                 ///< empty without any

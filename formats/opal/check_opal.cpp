@@ -129,6 +129,42 @@ Fault find_primitive_fault(const AssetView& asset, std::size_t i) {
     return {primitive_name(i), find_image_fault(asset, p.base_color_image, p.wrap_u, p.wrap_v)};
 }
 
+const char* find_vertex_fault(const PrimitiveRecord& p, std::uint32_t added,
+                              std::span<const AddedVertex> vertices) {
+    const std::uint32_t given = p.vertex_count - added;
+    for (const AddedVertex& at : vertices) {
+        if (std::ranges::any_of(at.corner, [&](std::uint32_t v) { return v >= given; })) {
+            return "a vertex lies between vertices that the scene does not have";
+        }
+        if (!std::ranges::all_of(at.weights(), [](float w) { return w >= 0 && w <= 1; })) {
+            return "a vertex's weights are not those of a point of a triangle";
+        }
+    }
+    return nullptr;
+}
+
+Fault find_added_fault(const AssetView& asset) {
+    const AddedVerticesView& added = asset.added;
+    if (added.empty() && added.vertex.empty()) return {};
+    if (added.count.size() != asset.primitives.size()) {
+        return {"section REFI", "it does not have a number for each primitive"};
+    }
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < added.count.size(); ++i) {
+        const std::uint32_t count = added.count[i];
+        if (count > asset.primitives[i].vertex_count || count > added.vertex.size() - next) {
+            return {"section REFI", "more vertices were added than there are"};
+        }
+        if (const char* fault =
+                find_vertex_fault(asset.primitives[i], count, added.vertex.subspan(next, count))) {
+            return {"section REFI, primitive " + std::to_string(i), fault};
+        }
+        next += count;
+    }
+    return next == added.vertex.size() ? Fault{}
+                                       : Fault{"section REFI", "vertices belong to no primitive"};
+}
+
 // Roughness decides what a renderer allocates: part of the structure.
 Fault find_specular_fault(const AssetView& asset) {
     if (asset.roughness.empty() && asset.openness.empty()) {
@@ -211,7 +247,8 @@ Fault find_structure_fault(const AssetView& asset) {
             }
             return fault;
         },
-        [&] { return find_holes_fault(asset); }, [&] { return find_normal_maps_fault(asset); },
+        [&] { return find_added_fault(asset); }, [&] { return find_holes_fault(asset); },
+        [&] { return find_normal_maps_fault(asset); },
         [&] { return find_volumes_fault(asset.volumes); },
         [&] { return find_clouds_fault(asset.clouds); }, [&] { return find_emitters_fault(asset); },
         [&] { return find_glow_fault(asset); });

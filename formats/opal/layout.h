@@ -67,6 +67,11 @@ struct HolesHead {
 };
 static_assert(sizeof(HolesHead) == 16);
 
+struct AddedVerticesHead {
+    std::uint32_t primitives = 0, record_size = 0, vertices = 0, reserved = 0;
+};
+static_assert(sizeof(AddedVerticesHead) == 16);
+
 struct NormalMapsHead {
     std::uint32_t count = 0, record_size = 0, vertices = 0, reserved = 0;
 };

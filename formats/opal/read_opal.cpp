@@ -83,6 +83,13 @@ bool read_normal_maps(SectionCursor cursor, AssetView& view) {
            cursor.take(head.vertices, view.normal_maps.tangent) && cursor.at_end();
 }
 
+bool read_added(SectionCursor cursor, AssetView& view) {
+    AddedVerticesHead head;
+    return cursor.take_one(head) && head.record_size == sizeof(AddedVertex) &&
+           cursor.take(head.primitives, view.added.count) &&
+           cursor.take(head.vertices, view.added.vertex) && cursor.at_end();
+}
+
 // A section that is read: how, its bit among those that must be there, and its versions.
 struct KnownSection {
     std::uint32_t id;
@@ -105,6 +112,7 @@ constexpr KnownSection kKnownSections[] = {
     {kTranSection, read_part<take_rows>([](AssetView& v) -> auto& { return v.transport; }), 4,
      kTransportVersion, kTransportVersion},
     {kMeshSection, read_mesh, 8},
+    {kRefiSection, read_added},
     {kImagSection, read_images},
     {kSpecSection, read_specular},
     {kGlosSection, read_gloss},

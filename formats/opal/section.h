@@ -37,6 +37,7 @@ inline constexpr std::uint32_t kImagSection = section_id("IMAG");
 inline constexpr std::uint32_t kSpecSection = section_id("SPEC");
 inline constexpr std::uint32_t kGlosSection = section_id("GLOS");
 inline constexpr std::uint32_t kHoleSection = section_id("HOLE");
+inline constexpr std::uint32_t kRefiSection = section_id("REFI");
 inline constexpr std::uint32_t kNormSection = section_id("NORM");
 inline constexpr std::uint32_t kTranSection = section_id("TRAN");
 inline constexpr std::uint32_t kVoluSection = section_id("VOLU");

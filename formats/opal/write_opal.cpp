@@ -42,6 +42,7 @@ struct SectionHeads {
     SpecularHead specular;
     GlossHead gloss;
     HolesHead holes;
+    AddedVerticesHead added;
     NormalMapsHead normal_maps;
     VolumesHead volumes;
     TransportHead volume_rows;
@@ -66,6 +67,7 @@ SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_
     heads.gloss = {count(asset.gloss), sizeof(GlossRecord), {}};
     heads.holes = {count(asset.holes.record), sizeof(HoleRecord), count(asset.holes.vertex_alpha),
                    0};
+    heads.added = {count(asset.added.count), sizeof(AddedVertex), count(asset.added.vertex), 0};
     heads.normal_maps = {count(asset.normal_maps.record), sizeof(NormalMapRecord),
                          count(asset.normal_maps.tangent), 0};
     heads.volumes = volumes_head(asset.volumes);
@@ -132,6 +134,11 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
     add(kTranSection, level, row_arrays(heads.transport, asset.transport));
     sections.back().entry.version = kTransportVersion;
     sections.push_back(store_mesh(asset, heads.mesh));
+    if (!asset.added.empty()) {
+        add(kRefiSection, kSmallLevel,
+            Arrays{bytes_of(heads.added), std::as_bytes(asset.added.count),
+                   std::as_bytes(asset.added.vertex)});
+    }
     if (!asset.images.empty()) {
         sections.push_back(store_images(asset, heads));
     }

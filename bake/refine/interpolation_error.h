@@ -1,0 +1,28 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bake/refine/proxy_rows.h"
+
+namespace opaline::bake {
+
+/// Squares by kind of light: distant light, then lamps.
+using ErrorColumns = std::array<double, 1 + ProxyTracer::kMostLamps>;
+
+/// A corner's part in what a triangle interpolates.
+struct MixedRow {
+    std::uint32_t row;
+    float weight;
+};
+
+/// The square of what proxy `row` is beyond the sum of others; of the row itself without any.
+/// Distant light: the mean square over suns of all directions and the square under an even sky,
+/// half each, in units in which both are 1 of an open receiver. Lamps: [lx^2].
+/// `solid_angle`: of the cells of a face [sr] (formats::texel_solid_angles).
+ErrorColumns square_beyond(const ProxyRows& rows, std::span<const double> solid_angle,
+                           std::uint32_t row, std::span<const MixedRow> others);
+
+}  // namespace opaline::bake

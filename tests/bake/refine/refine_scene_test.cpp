@@ -1,0 +1,201 @@
+#include "bake/refine/refine_scene.h"
+
+#include <gtest/gtest.h>
+
+#include "bake/receivers/surface_points.h"
+#include "bake/receivers/vertex_receivers.h"
+#include "bake/trace/irradiance_transport.h"
+#include "formats/opal/cubemap.h"
+#include "tests/support/media.h"
+#include "tests/support/scenes.h"
+
+namespace opaline::bake {
+namespace {
+
+using formats::Scene;
+
+RefineLimits some_limits(double error) {
+    RefineLimits limits;
+    limits.error = error;
+    limits.most_added = 100000;
+    return limits;
+}
+
+RefinedScene refine(const Scene& scene, const RefineLimits& limits, unsigned threads = 2) {
+    Context context;
+    context.threads = threads;
+    const RayScene rays = RayScene::build(scene, 2).value();
+    std::vector<LampSources> lamps;
+    for (const Lamp& lamp : list_lamps(scene)) {
+        lamps.push_back(make_lamp_sources(scene, lamp));
+    }
+    return refine_scene(scene, rays, lamps, limits, context);
+}
+
+// Relative RMS, over a primitive's surface, of what vertices interpolate of a function.
+template <class Function>
+double interpolation_error(const Scene& scene, std::uint32_t primitive, Function&& exact) {
+    const AreaTable table = make_area_table(scene, {primitive});
+    double error = 0, sum = 0;
+    for (const SurfacePoint& at : scatter_points(scene, table, 5000, false, 1)) {
+        const formats::Primitive& p = scene.primitives[primitive];
+        double found = 0;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            found += static_cast<double>(at.barycentric[static_cast<glm::length_t>(k)]) *
+                     exact(p.position[p.index[at.first_index + k]]);
+        }
+        const double truth = exact(at.position);
+        error += (found - truth) * (found - truth);
+        sum += truth * truth;
+    }
+    return std::sqrt(error / sum);
+}
+
+constexpr float kRadius = 0.3f, kHeight = 0.4f;
+Scene ball_over_two_triangles() {
+    return tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}),
+                              tests::make_sphere(3, kRadius, {0.3f, kHeight, 0.2f})});
+}
+
+// Irradiance of the even sky over pi: what the ball leaves, whose form factor is (r/d)^2 h/d.
+double open_share(glm::vec3 x) {
+    const glm::dvec3 way = glm::dvec3(0.3f, kHeight, 0.2f) - glm::dvec3(x);
+    const double d = glm::length(way);
+    return 1 - (double{kRadius} / d) * (double{kRadius} / d) * (way.y / d);
+}
+
+TEST(RefineScene, TwoTrianglesUnderABallGetItsShadow) {
+    const Scene scene = ball_over_two_triangles();
+    EXPECT_GT(interpolation_error(scene, 0, open_share), 0.05);
+    const RefinedScene found = refine(scene, some_limits(0.05));
+    ASSERT_TRUE(found.scene);
+    EXPECT_LT(interpolation_error(*found.scene, 0, open_share), 0.015);
+    EXPECT_GT(found.report.error_before, 0.08);
+    EXPECT_LE(found.report.error_after, 0.05);
+    EXPECT_LT(found.report.added, 1500u);  // an even grid as good as theirs has 60 x 60
+    EXPECT_EQ(found.report.added,
+              found.scene->primitives[0].added.size() + found.scene->primitives[1].added.size());
+}
+
+TEST(RefineScene, FinerLimitsFollowTheShadowFurther) {
+    const Scene scene = ball_over_two_triangles();
+    const RefinedScene coarse = refine(scene, some_limits(0.1));
+    const RefinedScene fine = refine(scene, some_limits(0.03));
+    EXPECT_GT(fine.report.added, 2 * coarse.report.added);
+    EXPECT_LT(interpolation_error(*fine.scene, 0, open_share),
+              interpolation_error(*coarse.scene, 0, open_share));
+}
+
+TEST(RefineScene, NothingIsAddedWhereNothingBlocksTheLight) {
+    const Scene scene = tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0})});
+    EXPECT_FALSE(refine(scene, some_limits(0.01)).scene);
+}
+
+TEST(RefineScene, BacksOfThinWallsCount) {
+    Scene scene = tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}),
+                                     tests::make_sphere(3, 0.3f, {0, -0.4f, 0})});
+    EXPECT_EQ(refine(scene, some_limits(0.05)).scene.value_or(scene).primitives[0].added.size(),
+              0u);
+    scene.materials.resize(2);
+    scene.primitives[0].material = 1;
+    scene.materials[1].sheet = formats::Sheet{};
+    EXPECT_GT(refine(scene, some_limits(0.05)).report.added, 100u);
+}
+
+// E = I h / d^3 below a point light: 3 % where it interpolates, without one occluder.
+TEST(RefineScene, ALampCloseToAFloorGetsReceiversBelowIt) {
+    Scene scene = tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0})});
+    formats::Light lamp;
+    lamp.name = "lamp";
+    lamp.position = {0.5f, 0.4f, 0.1f};
+    scene.lights = {lamp};
+    const RefinedScene found = refine(scene, some_limits(0.05));
+    ASSERT_TRUE(found.scene);
+    const double error = interpolation_error(*found.scene, 0, [&](glm::vec3 x) {
+        const glm::dvec3 way = glm::dvec3(lamp.position) - glm::dvec3(x);
+        return way.y / std::pow(glm::dot(way, way), 1.5);
+    });
+    EXPECT_LT(error, 0.06);
+}
+
+// Light reaches through a bar as far as it diffuses: of a dense one that is shorter than its sides.
+TEST(RefineScene, MediaGetReceiversWhereTheyAreThin) {
+    Scene scene = tests::make_scene({tests::make_cube(1, false)});
+    scene.materials[0].medium = tests::make_grey_medium(20, 0.05f);
+    EXPECT_GT(refine(scene, some_limits(0.05)).report.added, 20u);
+    scene.materials[0].medium = tests::make_grey_medium(0.01f, 0.0001f);  // as clear everywhere
+    EXPECT_FALSE(refine(scene, some_limits(0.05)).scene);
+}
+
+TEST(RefineScene, TheLimitOfReceiversHolds) {
+    RefineLimits limits = some_limits(0.01);
+    limits.most_added = 100;
+    const RefinedScene found = refine(ball_over_two_triangles(), limits);
+    EXPECT_TRUE(found.report.is_bounded);
+    EXPECT_GE(found.report.added, 100u);
+    EXPECT_LE(found.report.added, 110u);  // neighbours of the last one are halved with it
+}
+
+TEST(RefineScene, LongEdgesAreHalvedWhateverTheLightDoes) {
+    RefineLimits limits = some_limits(0);
+    limits.longest_edge = 0.3;
+    const RefinedScene found = refine(ball_over_two_triangles(), limits);
+    ASSERT_TRUE(found.scene);
+    const formats::Primitive& p = found.scene->primitives[0];
+    for (std::size_t i = 0; i < p.index.size(); ++i) {
+        const std::size_t next = i % 3 == 2 ? i - 2 : i + 1;
+        EXPECT_LE(glm::distance(p.position[p.index[i]], p.position[p.index[next]]), 0.3f);
+    }
+}
+
+TEST(RefineScene, ResultIsTheSameForAnyNumberOfThreads) {
+    const RefinedScene one = refine(ball_over_two_triangles(), some_limits(0.04), 1);
+    const RefinedScene three = refine(ball_over_two_triangles(), some_limits(0.04), 3);
+    ASSERT_TRUE(one.scene && three.scene);
+    EXPECT_EQ(one.scene->primitives[0].index, three.scene->primitives[0].index);
+    EXPECT_EQ(one.scene->primitives[0].position, three.scene->primitives[0].position);
+}
+
+// Middles of edges are rounded: a room closed to light must stay dark at all of them.
+TEST(RefineScene, ARoomThatLightCannotEnterStaysBlackAtAddedReceivers) {
+    RefineLimits limits = some_limits(0);
+    limits.longest_edge = 0.25;
+    const Scene room = tests::make_scene({tests::transformed(
+        tests::make_cube(1, true), tests::some_rotation(), 1.37f, {11.3f, -7.1f, 3.3f})});
+    const RefinedScene found = refine(room, limits);
+    ASSERT_TRUE(found.scene);
+    const RayScene rays = RayScene::build(*found.scene, 2).value();
+    const DirectionSet directions = make_direction_set(8);
+    std::vector<float> transport(6 * 8 * 8);
+    for (const Receiver& receiver : make_vertex_receivers(*found.scene)) {
+        gather_irradiance(rays, directions, receiver, transport);
+        EXPECT_EQ(*std::ranges::max_element(transport), 0);
+    }
+}
+
+// Smooth shading of few facets: a receiver that is added looks from the smooth surface, as points
+// of a coarse mesh do, and not from a facet's horizon.
+TEST(RefineScene, AddedReceiversSeeTheHorizonOfTheSmoothSurface) {
+    const Scene scene = tests::make_scene({tests::make_sphere(1)});
+    RefineLimits limits = some_limits(0);
+    limits.longest_edge = 0.15;
+    const RefinedScene found = refine(scene, limits);
+    ASSERT_TRUE(found.scene);
+    const RayScene rays = RayScene::build(*found.scene, 2).value();
+    const DirectionSet directions = make_direction_set(8);
+    std::vector<float> transport(6 * 8 * 8);
+    const std::vector<double> area = formats::texel_solid_angles(8);
+    double least = 1;
+    for (const Receiver& receiver : make_vertex_receivers(*found.scene)) {
+        gather_irradiance(rays, directions, receiver, transport);
+        double sum = 0;
+        for (std::size_t j = 0; j < transport.size(); ++j) {
+            sum += area[j % area.size()] * static_cast<double>(transport[j]);
+        }
+        least = std::min(least, sum / std::numbers::pi);
+    }
+    EXPECT_GT(least, 0.97);
+}
+
+}  // namespace
+}  // namespace opaline::bake
