@@ -8,18 +8,23 @@ ErrorColumns square_beyond(const ProxyRows& rows, std::span<const double> solid_
                            std::uint32_t row, std::span<const MixedRow> others) {
     constexpr double kPi = std::numbers::pi;
     constexpr double kOpen = 2 * kPi / 3;  // integral of the cosine's square over a hemisphere
-    double suns = 0, sky = 0;
+    double suns = 0;
+    std::array<double, 2> sky{};
     for (std::size_t j = 0; j < rows.cells; ++j) {
-        float value = rows.cell[row * rows.cells + j];
-        for (const MixedRow& other : others) {
-            value -= other.weight * static_cast<float>(rows.cell[other.row * rows.cells + j]);
+        const double area = solid_angle[j % solid_angle.size()];
+        std::array<double, 2> difference{};
+        for (std::size_t estimate = 0; estimate < 2; ++estimate) {
+            float value = rows.cells_of(row, estimate)[j];
+            for (const MixedRow& other : others) {
+                value -= other.weight * static_cast<float>(rows.cells_of(other.row, estimate)[j]);
+            }
+            difference[estimate] = static_cast<double>(value) / 255;
+            sky[estimate] += area * difference[estimate];
         }
-        const double difference = static_cast<double>(value) / 255;
-        suns += solid_angle[j % solid_angle.size()] * difference * difference;
-        sky += solid_angle[j % solid_angle.size()] * difference;
+        suns += area * difference[0] * difference[1];
     }
     ErrorColumns square{};
-    square[0] = 0.5 * (suns / kOpen + (sky / kPi) * (sky / kPi));
+    square[0] = 0.5 * (suns / kOpen + (sky[0] / kPi) * (sky[1] / kPi));
     for (std::size_t lamp = 0; lamp < rows.lamps; ++lamp) {
         double value = static_cast<double>(rows.lamps_of(row)[lamp]);
         for (const MixedRow& other : others) {

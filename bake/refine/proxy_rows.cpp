@@ -41,7 +41,9 @@ ProxyTracer::ProxyTracer(const formats::Scene& scene, const RayScene& rays,
                          std::uint32_t cubemap_size, std::span<const LampSources> lamps)
     : scene_(scene),
       rays_(rays),
-      directions_(make_direction_set(cubemap_size)),
+      directions_{
+          make_sparse_direction_set(cubemap_size, 0), make_sparse_direction_set(cubemap_size, 1),
+          make_sparse_direction_set(cubemap_size, 2), make_sparse_direction_set(cubemap_size, 3)},
       volumes_(make_density_space(scene)),
       cells_(make_light_cells(cubemap_size)),
       lamps_(lamps) {
@@ -52,7 +54,7 @@ ProxyTracer::ProxyTracer(const formats::Scene& scene, const RayScene& rays,
 
 ProxyRows ProxyTracer::no_rows() const {
     ProxyRows rows;
-    rows.cells = directions_.inverse_solid_angle.size();
+    rows.cells = directions_[0].inverse_solid_angle.size();
     rows.lamps = std::min(lamps_.size(), kMostLamps);
     return rows;
 }
@@ -89,30 +91,23 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
     const Receiver front = sample.receiver;
     const bool is_hidden_there = !material.sheet && is_hidden(rays_, front);
     rows.hidden.push_back(is_hidden_there ? 1 : 0);
-    std::vector<float> transport(rows.cells, 0.0f);
+    std::array<std::vector<float>, 2> transport;
+    transport.fill(std::vector<float>(rows.cells));
     std::vector<float> irradiance(rows.lamps, 0.0f);
     std::uint64_t traced = 0;
     if (!is_hidden_there) {
-        traced += gather_irradiance(rays_, directions_, front, transport);
         const glm::vec3 behind = 2.0f * sample.position - front.origin;
-        if (material.sheet) {
-            std::vector<float> other(rows.cells);
-            traced += gather_irradiance(rays_, directions_, {behind, -front.normal}, other);
-            std::ranges::transform(transport, other, transport.begin(), std::plus<>());
-        }
-        if (!volumes_.volumes.empty()) {
-            const std::size_t bands = volumes_.extinction_bands();
-            std::vector<float> through(bands * rows.cells);
-            gather_transmittance(volumes_, cells_, sample.position, through);
+        const std::vector<float> through = see_through_volumes(sample.position);
+        for (std::size_t estimate = 0; estimate < 2; ++estimate) {
+            std::vector<float>& own = transport[estimate];
+            traced += look_outside(front, estimate, own);
+            if (material.sheet) traced += look_outside({behind, -front.normal}, estimate, own);
             for (std::size_t i = 0; i < through.size(); ++i) {
-                if (i >= rows.cells) through[i % rows.cells] += through[i];
+                own[i] *= through[i];
             }
-            for (std::size_t i = 0; i < rows.cells; ++i) {
-                transport[i] *= through[i] / static_cast<float>(bands);
+            if (material.medium) {
+                traced += look_inside(reach_[number], {behind, -front.normal}, estimate, own);
             }
-        }
-        if (material.medium) {
-            traced += look_inside(reach_[number], {behind, -front.normal}, transport);
         }
         for (std::size_t i = 0; i < lamps_.size(); ++i) {
             const glm::dvec3 light =
@@ -121,20 +116,50 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
                 static_cast<float>(light.x + light.y + light.z);
         }
     }
-    for (const float value : transport) {
-        rows.cell.push_back(
-            static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0f, 1.0f))));
+    for (const std::vector<float>& own : transport) {
+        for (const float value : own) {
+            rows.cell.push_back(
+                static_cast<std::uint8_t>(std::lround(255 * std::clamp(value, 0.0f, 1.0f))));
+        }
     }
     rows.lamp.insert(rows.lamp.end(), irradiance.begin(), irradiance.end());
     return traced;
 }
 
+// Of light from each cell, the mean over bands; empty without volumes.
+std::vector<float> ProxyTracer::see_through_volumes(glm::vec3 position) const {
+    if (volumes_.volumes.empty()) return {};
+    const std::size_t bands = volumes_.extinction_bands();
+    std::vector<float> through(bands * cells_.size());
+    gather_transmittance(volumes_, cells_, position, through);
+    std::vector<float> mean(cells_.size());
+    for (std::size_t i = 0; i < through.size(); ++i) {
+        mean[i % mean.size()] += through[i] / static_cast<float>(bands);
+    }
+    return mean;
+}
+
+// Adds the mean of two quarters that lie across.
+std::uint64_t ProxyTracer::look_outside(const Receiver& receiver, std::size_t estimate,
+                                        std::span<float> transport) const {
+    std::uint64_t traced = 0;
+    std::vector<float> one(transport.size());
+    for (const std::size_t quarter : {estimate, 3 - estimate}) {
+        traced += gather_irradiance(rays_, directions_[quarter], receiver, one);
+        for (std::size_t i = 0; i < one.size(); ++i) {
+            transport[i] += 0.5f * one[i];
+        }
+    }
+    return traced;
+}
+
 std::uint64_t ProxyTracer::look_inside(const DiffusiveReach& reach, const Receiver& inner,
-                                       std::span<float> transport) const {
+                                       std::size_t estimate, std::span<float> transport) const {
+    const DirectionSet& directions = directions_[estimate];
     std::vector<float> inside(transport.size(), 0.0f);
     std::uint64_t traced = 0;
     RayPacket packet = rays_from(inner.origin);
-    for (const DirectionBlock& block : directions_.blocks) {
+    for (const DirectionBlock& block : directions.blocks) {
         if (is_below(block, inner.normal)) continue;
         LaneMask lanes;
         RayPacket::Lane cosine;  // integrated over each cell
@@ -155,7 +180,7 @@ std::uint64_t ProxyTracer::look_inside(const DiffusiveReach& reach, const Receiv
             }
         }
     }
-    divide_by_solid_angle(directions_, inside);
+    divide_by_solid_angle(directions, inside);
     std::ranges::transform(transport, inside, transport.begin(), std::plus<>());
     return traced;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -25,7 +26,9 @@ struct ProxyPoint {
 
 /// Rows that stand for transport vectors while receivers are placed: coarse, and cheap.
 ///
-/// Of distant light, a value in [0, 1] for each cell of a cube map, rounded to 1/255:
+/// Of distant light, a value in [0, 1] for each cell of a cube map, rounded to 1/255, twice: by two
+/// rays a cell and by two others, so that the product of two differences has no part of their
+/// rounding to a few rays.
 ///  - toward the outside, the mean over the cell of V max(0, n.w), dimmed by volumes;
 ///  - through a thin wall, the same behind it;
 ///  - into a medium, max(0, -n.w) T(d): d is how far [m] the body goes there, and T(d) =
@@ -34,13 +37,13 @@ struct ProxyPoint {
 /// Of each lamp, its straight irradiance [lx] outside.
 struct ProxyRows {
     std::size_t cells = 0, lamps = 0;
-    std::vector<std::uint8_t> cell;
+    std::vector<std::uint8_t> cell;  ///< of the first estimate, then of the second
     std::vector<float> lamp;
     std::vector<std::uint8_t> hidden;  ///< 1: inside a closed body, where nobody sees it; all 0
 
     std::size_t size() const { return hidden.size(); }
-    std::span<const std::uint8_t> cells_of(std::size_t row) const {
-        return std::span(cell).subspan(row * cells, cells);
+    std::span<const std::uint8_t> cells_of(std::size_t row, std::size_t estimate) const {
+        return std::span(cell).subspan((2 * row + estimate) * cells, cells);
     }
     std::span<const float> lamps_of(std::size_t row) const {
         return std::span(lamp).subspan(row * lamps, lamps);
@@ -74,12 +77,15 @@ class ProxyTracer {
 
   private:
     std::uint64_t trace(const ProxyPoint& point, ProxyRows& rows) const;
+    std::vector<float> see_through_volumes(glm::vec3 position) const;
+    std::uint64_t look_outside(const Receiver& receiver, std::size_t estimate,
+                               std::span<float> transport) const;
     std::uint64_t look_inside(const DiffusiveReach& reach, const Receiver& inner,
-                              std::span<float> transport) const;
+                              std::size_t estimate, std::span<float> transport) const;
 
     const formats::Scene& scene_;
     const RayScene& rays_;
-    DirectionSet directions_;
+    std::array<DirectionSet, 4> directions_;  ///< one for each quarter of a cell
     DensitySpace volumes_;
     LightCells cells_;  ///< of volumes
     std::span<const LampSources> lamps_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "bake/refine/watched_mesh.h"
@@ -47,10 +48,8 @@ struct RelativeErrors {
     }
 };
 
-// What nothing looks at cannot be mended: beside it, half of the limit will do.
 bool is_met(const RelativeErrors& error, std::size_t column, double limit) {
-    return error.seen[column] + error.unseen[column] <= limit * limit ||
-           error.seen[column] <= limit * limit / 4;
+    return error.seen[column] + error.unseen[column] <= limit * limit;
 }
 
 bool is_met(const RelativeErrors& error, double limit) {
@@ -60,19 +59,40 @@ bool is_met(const RelativeErrors& error, double limit) {
     return true;
 }
 
-RelativeErrors sum_errors(const WatchedMesh& watched, const WatchedMesh::FirstLook& first) {
-    RelativeErrors sum{{}, first.unseen};
+RelativeErrors sum_errors(const WatchedMesh& watched) {
+    const ErrorColumns& total = watched.total();
+    RelativeErrors sum{{}, watched.unseen()};
     for (std::uint32_t t = 0; t < watched.mesh().size(); ++t) {
         if (!watched.is_watched(t)) continue;
-        for (std::size_t c = 0; c < sum.seen.size(); ++c) {
+        for (std::size_t c = 0; c < total.size(); ++c) {
             sum.seen[c] += watched.mesh().area(t) * watched.error(t)[c];
         }
     }
-    for (std::size_t c = 0; c < sum.seen.size(); ++c) {
-        sum.seen[c] = first.total[c] > 0 ? sum.seen[c] / first.total[c] : 0;
-        sum.unseen[c] = first.total[c] > 0 ? sum.unseen[c] / first.total[c] : 0;
+    for (std::size_t c = 0; c < total.size(); ++c) {
+        sum.seen[c] = total[c] > 0 ? sum.seen[c] / total[c] : 0;
+        sum.unseen[c] = total[c] > 0 ? sum.unseen[c] / total[c] : 0;
     }
     return sum;
+}
+
+// Half of the limit's square is met where triangles are watched, and no more of the rest is found.
+bool is_stuck(const RelativeErrors& before, const RelativeErrors& now, double limit) {
+    constexpr double kFound = 0.05;
+    for (std::size_t c = 0; c < now.seen.size(); ++c) {
+        if (!is_met(now, c, limit) &&
+            (now.seen[c] > limit * limit / 2 || now.unseen[c] < (1 - kFound) * before.unseen[c])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+// Most of what errs too much lies in triangles without a point.
+bool needs_more_points(const RelativeErrors& error, double limit) {
+    for (std::size_t c = 0; c < error.seen.size(); ++c) {
+        if (!is_met(error, c, limit) && error.unseen[c] > limit * limit / 2) return true;
+    }
+    return false;
 }
 
 struct RefineJob {
@@ -87,25 +107,27 @@ struct RefineJob {
     }
 };
 
-// By what kinds of light err by too much; whether there was one to halve.
-bool halve_worst(const RefineJob& job, const RelativeErrors& error, const ErrorColumns& total,
-                 WatchedMesh& watched) {
+// Halves by what kinds of light err too much; whether there was anything to halve. Triangles that
+// err by less than the limit themselves stay, whatever others do.
+bool halve_worst(const RefineJob& job, const RelativeErrors& error, WatchedMesh& watched) {
     struct Candidate {
         double weight;
         std::uint32_t triangle;
     };
     std::vector<Candidate> candidates;
+    const double limit = job.limits.error * job.limits.error;
     double sum = 0;
     for (std::uint32_t t = 0; t < watched.mesh().size(); ++t) {
         if (!watched.is_watched(t) || watched.mesh().longest_edge(t) < 2 * job.shortest) continue;
-        double weight = 0;
-        for (std::size_t c = 0; c < total.size(); ++c) {
+        double own = 0;
+        for (std::size_t c = 0; c < watched.total().size(); ++c) {
             if (!is_met(error, c, job.limits.error)) {
-                weight += watched.mesh().area(t) * watched.error(t)[c] / total[c];
+                own += watched.error(t)[c] * watched.area() / watched.total()[c];
             }
         }
-        if (weight > 0) candidates.push_back({weight, t});
-        sum += weight;
+        if (own <= limit) continue;
+        candidates.push_back({watched.mesh().area(t) * own, t});
+        sum += candidates.back().weight;
     }
     std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::weight);
     double halved = 0;
@@ -120,21 +142,23 @@ bool halve_worst(const RefineJob& job, const RelativeErrors& error, const ErrorC
 void halve_where_light_changes(const RefineJob& job, WatchedMesh& watched) {
     const double wanted = job.limits.probes_per_receiver * static_cast<double>(job.report.given);
     const auto all = static_cast<std::size_t>(std::clamp(wanted, 256.0, 65536.0));
-    const std::size_t few = std::min(all, kFewPoints);
-    WatchedMesh::FirstLook first = watched.look_first(few, job.limits.seed);
-    RelativeErrors error = sum_errors(watched, first);
-    if (few < all && !is_met(error, job.limits.error)) {
-        first = watched.look_first(all, job.limits.seed);
-        error = sum_errors(watched, first);
+    std::size_t points = std::min(all, kFewPoints);
+    watched.look_first(points, job.limits.seed);
+    RelativeErrors error = sum_errors(watched);
+    while (points < all && needs_more_points(error, job.limits.error)) {
+        if (job.context.cancelled()) return;
+        points = std::min(all, 4 * points);
+        watched.look_first(points, job.limits.seed);
+        error = sum_errors(watched);
     }
     job.report.error_before = job.report.error_after = error.worst();
-    for (std::uint32_t round = 0; round < kMostRounds; ++round) {
-        if (is_met(error, job.limits.error) || !halve_worst(job, error, first.total, watched)) {
-            return;
-        }
+    bool is_done = is_met(error, job.limits.error);
+    for (std::uint32_t round = 0; round < kMostRounds && !is_done; ++round) {
+        if (!halve_worst(job, error, watched)) return;
         watched.look_at_parts();
         if (job.context.cancelled()) return;
-        error = sum_errors(watched, first);
+        const RelativeErrors before = std::exchange(error, sum_errors(watched));
+        is_done = is_met(error, job.limits.error) || is_stuck(before, error, job.limits.error);
         job.report.error_after = error.worst();
     }
 }

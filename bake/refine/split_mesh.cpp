@@ -107,6 +107,17 @@ double SplitMesh::longest_edge(std::uint32_t triangle) const {
     return std::sqrt(length_of(triangle, longest_side(triangle)).square);
 }
 
+std::vector<std::uint32_t> SplitMesh::neighbours(std::uint32_t triangle) const {
+    std::vector<std::uint32_t> found;
+    for (std::uint32_t own = 0; own < 3; ++own) {
+        for (std::uint32_t side = first_.at(length_of(triangle, own).edge); side != kNoSide;
+             side = next_[side]) {
+            if (side / 3 != triangle) found.push_back(side / 3);
+        }
+    }
+    return found;
+}
+
 void SplitMesh::halve(std::uint32_t triangle, std::vector<Half>& halves) {
     struct Wanted {
         std::uint32_t triangle;

@@ -46,6 +46,8 @@ class SplitMesh {
     /// order.
     std::uint32_t longest_side(std::uint32_t triangle) const;
     double longest_edge(std::uint32_t triangle) const;  ///< [m]
+    /// Triangles that share an edge with it.
+    std::vector<std::uint32_t> neighbours(std::uint32_t triangle) const;
     /// Vertices added to all primitives.
     std::uint64_t added() const { return added_; }
 

@@ -40,7 +40,7 @@ WatchedMesh::WatchedMesh(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
-WatchedMesh::FirstLook WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
+void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> all(mesh_.scene().primitives.size());
     std::iota(all.begin(), all.end(), 0u);
     const AreaTable table = make_area_table(mesh_.scene(), all);
@@ -60,23 +60,29 @@ WatchedMesh::FirstLook WatchedMesh::look_first(std::size_t count, std::uint64_t 
     }
     trace(points);
     look_at(fresh);
-    FirstLook found;
-    if (context_.cancelled()) return found;
+    total_ = unseen_ = {};
+    area_ = table.total();
+    if (context_.cancelled()) return;
     measure(fresh);
-    const double share = table.total() / static_cast<double>(count);
+    const double share = area_ / static_cast<double>(count);
     for (const std::uint32_t triangle : fresh) {
         // A small triangle's point stands for others beside it, which nothing looks at.
         const Watched& own = watched_[triangle];
         const double area = share * static_cast<double>(own.looks.size());
-        add_scaled(found.unseen, std::max(0.0, area - mesh_.area(triangle)), own.error);
+        add_scaled(unseen_, std::max(0.0, area - mesh_.area(triangle)), own.error);
         for (const Look& look : own.looks) {
-            add_scaled(found.total, share, square_beyond(rows_, solid_angle_, look.row, {}));
+            add_scaled(total_, share, square_beyond(rows_, solid_angle_, look.row, {}));
         }
     }
-    return found;
 }
 
 void WatchedMesh::halve(std::uint32_t triangle) {
+    for (const std::uint32_t neighbour : mesh_.neighbours(triangle)) {
+        if (watched_[neighbour].is_watched) continue;
+        watched_[neighbour].is_watched = true;
+        parts_.push_back(neighbour);
+        joined_.push_back(neighbour);
+    }
     std::vector<SplitMesh::Half> halves;
     mesh_.halve(triangle, halves);
     watched_.resize(mesh_.size());
@@ -90,7 +96,13 @@ void WatchedMesh::look_at_parts() {
     parts_.erase(std::unique(parts_.begin(), parts_.end()), parts_.end());
     look_at(parts_);
     if (!context_.cancelled()) measure(parts_);
+    for (const std::uint32_t t : joined_) {
+        for (std::size_t c = 0; c < unseen_.size(); ++c) {
+            unseen_[c] = std::max(0.0, unseen_[c] - mesh_.area(t) * watched_[t].error[c]);
+        }
+    }
     parts_.clear();
+    joined_.clear();
 }
 
 void WatchedMesh::trace(std::span<const ProxyPoint> points) {
@@ -123,7 +135,7 @@ void WatchedMesh::look_at(std::span<const std::uint32_t> triangles) {
             row = add(t, weight);
         }
         Watched& own = watched_[t];
-        if (triangle.depth == 0 || own.looks.size() >= 2) continue;
+        if (own.looks.size() >= (triangle.depth == 0 ? 1 : 2)) continue;
         const std::uint32_t side = mesh_.longest_side(t);
         glm::vec3 weight(0.5f);
         weight[static_cast<glm::length_t>((side + 2) % 3)] = 0;

@@ -25,16 +25,12 @@ class WatchedMesh {
                 std::span<const LampSources> lamps, std::uint32_t cubemap_size, double shortest,
                 const Context& context);
 
-    /// Squares over the surface [m^2].
-    struct FirstLook {
-        ErrorColumns total{};   ///< of all light
-        ErrorColumns unseen{};  ///< of the error where no triangle is watched, by the others'
-    };
     /// Forgets all points; then looks at one point in each of `count` equal parts of the surface.
-    FirstLook look_first(std::size_t count, std::uint64_t seed);
-    /// Halves a watched triangle and what must be halved with it.
+    void look_first(std::size_t count, std::uint64_t seed);
+    /// Halves a watched triangle and what must be halved with it. Its neighbours are watched from
+    /// now on: where one triangle of a dense mesh errs, those beside it do.
     void halve(std::uint32_t triangle);
-    /// Looks at what was halved since.
+    /// Looks at what was halved since, and at its neighbours.
     void look_at_parts();
 
     const SplitMesh& mesh() const { return mesh_; }
@@ -42,6 +38,11 @@ class WatchedMesh {
     bool is_watched(std::uint32_t triangle) const { return watched_[triangle].is_watched; }
     /// Mean square; 0 where nothing of it is seen.
     const ErrorColumns& error(std::uint32_t triangle) const { return watched_[triangle].error; }
+    double area() const { return area_; }  ///< of all surfaces [m^2]
+    /// Square of all light over the surface [m^2].
+    const ErrorColumns& total() const { return total_; }
+    /// Square of the error [m^2] where triangles are not watched, by what the others err by.
+    const ErrorColumns& unseen() const { return unseen_; }
     std::uint64_t rays() const { return traced_; }
 
   private:
@@ -77,11 +78,14 @@ class WatchedMesh {
     SplitMesh mesh_;
     ProxyTracer tracer_;
     ProxyRows rows_;
-    std::vector<double> solid_angle_;   ///< of the cells of a face
-    std::vector<Watched> watched_;      ///< of each triangle
-    std::vector<std::uint32_t> parts_;  ///< halved and not looked at yet
+    std::vector<double> solid_angle_;    ///< of the cells of a face
+    std::vector<Watched> watched_;       ///< of each triangle
+    std::vector<std::uint32_t> parts_;   ///< halved and not looked at yet
+    std::vector<std::uint32_t> joined_;  ///< watched and not looked at yet
     std::vector<std::vector<std::uint32_t>> vertex_row_;
     std::unordered_map<VertexEdge, std::uint32_t, EdgeHash> middle_row_;
+    double area_ = 0;
+    ErrorColumns total_{}, unseen_{};
     std::uint64_t traced_ = 0;
 };
 

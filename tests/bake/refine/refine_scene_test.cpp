@@ -79,8 +79,8 @@ TEST(RefineScene, TwoTrianglesUnderABallGetItsShadow) {
 
 TEST(RefineScene, FinerLimitsFollowTheShadowFurther) {
     const Scene scene = ball_over_two_triangles();
-    const RefinedScene coarse = refine(scene, some_limits(0.1));
-    const RefinedScene fine = refine(scene, some_limits(0.03));
+    const RefinedScene coarse = refine(scene, some_limits(0.06));
+    const RefinedScene fine = refine(scene, some_limits(0.02));
     EXPECT_GT(fine.report.added, 2 * coarse.report.added);
     EXPECT_LT(interpolation_error(*fine.scene, 0, open_share),
               interpolation_error(*coarse.scene, 0, open_share));
@@ -99,7 +99,7 @@ TEST(RefineScene, BacksOfThinWallsCount) {
     scene.materials.resize(2);
     scene.primitives[0].material = 1;
     scene.materials[1].sheet = formats::Sheet{};
-    EXPECT_GT(refine(scene, some_limits(0.05)).report.added, 100u);
+    EXPECT_GT(refine(scene, some_limits(0.03)).report.added, 30u);
 }
 
 // E = I h / d^3 below a point light: 3 % where it interpolates, without one occluder.
