@@ -188,6 +188,20 @@ std::vector<GltfObject> make_bricks() {
                          make_panel({-200, 0, 200}, {400, 0, 0}, {0, 0, -340}, 64, kTile))};
 }
 
+// Each by itself on a floor of two triangles, as they leave a modeller.
+std::vector<GltfObject> make_first_scene() {
+    constexpr double kBall = 220, kHalf = 2000;  // [mm]
+    TriangleMesh floor;
+    append_grid(floor, 1, 1, {-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf});
+    return {
+        piece_object("Monkey", {0.62, 0.36, 0.20}, make_monkey_head(), {}),
+        piece_object("Ball", {0.90, 0.88, 0.85}, make_sphere({720, kBall - kSink, 130}, kBall, 4),
+                     {.metallic = 1, .roughness = 0.25, .strength = 1}),
+        piece_object("Torus", {0.12, 0.35, 0.62}, make_torus({-560, 0, 480}, {}), {}),
+        piece_object("Cube", {0.70, 0.64, 0.16}, make_cube({-680, 0, -420}, 480, 0.5), {}),
+        piece_object("Plane", {0.80, 0.80, 0.80}, std::move(floor), {})};
+}
+
 constexpr double kBallRadius = 40;  // [mm]
 
 // What smoulders, and a floor for the shadow.
@@ -244,6 +258,10 @@ constexpr Example kExamples[] = {
      make_statue},
     {{"knot", "a trefoil knot standing on a floor: self-shadowing and contact shadows"},
      make_trefoil},
+    {{"first-scene",
+      "a monkey's head, a metal ball, a torus and a cube on a plane of four vertices: what is "
+      "first made in a modeller"},
+     make_first_scene},
     {{"glossy", "two metal balls and a lacquered one on a glossy floor: metallic-roughness gloss"},
      make_glossy},
     {{"leaves", "a plant of eleven arched leaves: thin-walled surfaces that transmit light"},

@@ -124,6 +124,21 @@ struct PanelOptions {
 };
 TriangleMesh make_panel(const PanelOptions& options);
 
+/// What a first scene in a modeller is made of, on y = 0. Lengths in millimetres.
+
+/// A monkey's head with ears, 0.46 m tall at the origin, its face toward +Z and a little to +X.
+TriangleMesh make_monkey_head();
+
+/// A ring that lies on the floor, without a seam: along x around vertices.
+struct TorusOptions {
+    double ring = 300, tube = 95;  ///< radii of the tube's centre line and of the tube
+    unsigned along = 48, around = 16;
+};
+TriangleMesh make_torus(glm::dvec3 place, const TorusOptions& options);
+
+/// A cube with a normal for each side: 24 vertices and 12 triangles. `turn`: about +Y [rad].
+TriangleMesh make_cube(glm::dvec3 place, double side, double turn);
+
 /// Smooth meshes whose relief is in a normal map. Lengths in millimetres.
 
 /// A mesh with texture coordinates, one a vertex; v = 0 on top of the image.

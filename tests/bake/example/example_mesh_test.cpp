@@ -130,8 +130,13 @@ TriangleMesh make_ball(double radius) {
 
 class ExampleFigure : public testing::TestWithParam<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Scenes, ExampleFigure, testing::Values("statue", "knot", "glossy"),
-                         [](const auto& scene_name) { return std::string(scene_name.param); });
+INSTANTIATE_TEST_SUITE_P(Scenes, ExampleFigure,
+                         testing::Values("statue", "knot", "glossy", "first-scene"),
+                         [](const auto& scene_name) {
+                             std::string name = scene_name.param;
+                             std::erase(name, '-');
+                             return name;
+                         });
 
 TEST_P(ExampleFigure, IsAClosedTwoManifoldThatFacesOutward) {
     EXPECT_EQ(open_edges(figure(GetParam())), 0u);
@@ -169,7 +174,7 @@ TEST_P(ExampleFigure, RestsOnTheFloor) {
     // Sunk by 0.4 mm: deep enough that no face lies in the floor, too little to be seen.
     EXPECT_NEAR(low->y, -0.0004, 0.0001);
     const std::map<std::string, double> height = {
-        {"statue", 0.12}, {"knot", 0.24}, {"glossy", 0.06}};
+        {"statue", 0.12}, {"knot", 0.24}, {"glossy", 0.06}, {"first-scene", 0.465}};
     EXPECT_NEAR(high->y, height.at(GetParam()), 0.05 * height.at(GetParam()));
 }
 
@@ -219,6 +224,34 @@ TEST(GlossyExample, HasThreeBallsOfTheirVolumeThatDoNotTouch) {
         const double middle = 0.07 * (static_cast<double>(i) - 1);
         for (const glm::dvec3& p : ball.position) {
             ASSERT_LT(std::abs(p.x - middle), 0.0301);
+        }
+    }
+}
+
+TEST(FirstSceneExample, HasAFloorOfTwoTrianglesAFlatCubeAndClosedThingsBesideEachOther) {
+    const auto& objects = scene("first-scene");
+    ASSERT_EQ(objects.size(), 5u);
+    EXPECT_EQ(floor_of("first-scene").position.size(), 4u);
+    EXPECT_EQ(euler_characteristic(objects[0].mesh), 2);
+    const TriangleMesh &torus = objects[2].mesh, &cube = objects[3].mesh;
+    EXPECT_EQ(open_edges(torus), 0u);
+    EXPECT_EQ(euler_characteristic(torus), 0);
+    EXPECT_EQ(cube.position.size(), 24u);
+    EXPECT_EQ(cube.position.size() - coinciding_vertices(cube), 8u);
+    EXPECT_NEAR(enclosed_volume(cube), 0.48 * 0.48 * 0.48, 1e-9);
+    for (const GltfObject& object : objects) {
+        expect_facing_normals(object.mesh);
+        for (const glm::dvec3& p : object.mesh.position) {
+            ASSERT_LE(std::max(std::abs(p.x), std::abs(p.z)), 2.0);
+        }
+    }
+    for (std::size_t i = 0; i < 4; ++i) {  // the light between them has room: nothing touches
+        for (std::size_t j = 0; j < i; ++j) {
+            for (const glm::dvec3& p : objects[i].mesh.position) {
+                for (const glm::dvec3& q : objects[j].mesh.position) {
+                    ASSERT_GT(glm::distance(p, q), 0.02);
+                }
+            }
         }
     }
 }
