@@ -108,6 +108,7 @@ void add_relight_command(Program& program);
 void add_render_command(Program& program);
 void add_view_command(Program& program);  // in view/
 void add_export_web_command(Program& program);
+void add_export_gltf_command(Program& program);
 void add_reference_command(Program& program);
 void add_compare_command(Program& program);
 void add_mie_command(Program& program);

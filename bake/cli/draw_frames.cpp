@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "bake/base/stage_log.h"
 #include "bake/cli/interrupt.h"
@@ -22,6 +23,13 @@ namespace {
 using formats::ErrorKind;
 using formats::make_error;
 
+// Of a metered picture, with a note where it is not 0.
+float note_exposure(const runtime::Picture& metered) {
+    const float exposure = runtime::choose_exposure(metered);
+    if (exposure != 0) print_note(fmt::format("exposure {:+.2f} EV; --exposure sets it", exposure));
+    return exposure;
+}
+
 // Of all frames; `meter(camera)` draws the picture that it is chosen from.
 template <class Meter>
 void choose_exposure(const FrameOptions& options, const runtime::Camera& camera, Drawing& drawing,
@@ -30,10 +38,7 @@ void choose_exposure(const FrameOptions& options, const runtime::Camera& camera,
         drawing.exposure = options.exposure.value_or(0.0f);
         return;
     }
-    drawing.exposure = runtime::choose_exposure(require(meter(runtime::meter_camera(camera))));
-    if (*drawing.exposure != 0) {
-        print_note(fmt::format("exposure {:+.2f} EV; --exposure sets it", *drawing.exposure));
-    }
+    drawing.exposure = note_exposure(require(meter(runtime::meter_camera(camera))));
 }
 
 // Draws and writes with `draw(camera)`, exposed as `meter(camera)` asks for.
@@ -59,54 +64,88 @@ void write_frames(const FrameOptions& options, const runtime::Camera& camera, st
     }
 }
 
+// What one light shows of a file, drawn on the processor. Refers to its arguments.
+class CpuFrames {
+  public:
+    CpuFrames(const FrameOptions& options, const formats::AssetView& view,
+              const PictureLight& light, const runtime::Camera& camera, Shown shown)
+        : view_(&view),
+          light_(&light),
+          shown_(shown),
+          threads_(options.threads),
+          lights_(light.parts.lights()) {
+        auto start = bake::Clock::now();
+        shade_for(camera.eye);
+        volumes_ = runtime::relight_volumes(
+            view.volumes, lights_.light[lights_.of_volumes],
+            {.terms = shown.terms, .emitters = shown.emitters, .threads = options.threads});
+        print_seconds(options, "dot products", bake::seconds_since(start));
+        software_.volumes = &volumes_;
+        software_.lights = lights_;
+        software_.threads = options.threads;
+        software_.background = shown.background;
+        software_.emitters = shown.emitters;
+        software_.layers =
+            shown.background && light.layers.layers ? &*light.layers.layers : nullptr;
+        if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
+            needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
+            start = bake::Clock::now();
+            const OpenedLight mirrored = light.layers.mirrored(light.sky);
+            lobes_ = runtime::make_specular_light(mirrored.environment, needs, mirrored.rotation,
+                                                  options.threads);
+            software_.specular = &lobes_;
+            print_seconds(options, "mirrored light", bake::seconds_since(start));
+        }
+        depends_on_eye_ = std::ranges::any_of(view.primitives, [](const auto& primitive) {
+            return primitive.shading != formats::Shading::diffuse;
+        });
+    }
+    CpuFrames(const CpuFrames&) = delete;
+    CpuFrames& operator=(const CpuFrames&) = delete;
+
+    formats::Result<runtime::Picture> draw(const runtime::Camera& at) {
+        return draw_with(at, software_);
+    }
+    formats::Result<runtime::Picture> meter(const runtime::Camera& at) {
+        runtime::SoftwareOptions metering = software_;
+        metering.supersampling = 1;
+        metering.background = shown_.background && !view_->clouds.empty();
+        return draw_with(at, metering);
+    }
+
+  private:
+    void shade_for(formats::Vec3 eye) {
+        shaded_for_ = eye;
+        radiance_ = runtime::shade_for_picture(*view_, lights_, eye, shown_.terms, threads_,
+                                               shown_.emitters);
+    }
+    formats::Result<runtime::Picture> draw_with(const runtime::Camera& at,
+                                                const runtime::SoftwareOptions& how) {
+        if (depends_on_eye_ && shaded_for_ != at.eye) shade_for(at.eye);
+        return runtime::render_software(*view_, radiance_, light_->sky.environment,
+                                        light_->sky.rotation, at, how);
+    }
+
+    const formats::AssetView* view_;
+    const PictureLight* light_;
+    Shown shown_;
+    unsigned threads_;
+    runtime::PartLights lights_;
+    formats::Vec3 shaded_for_;
+    std::vector<formats::Rgb> radiance_;
+    runtime::VolumeLight volumes_;
+    runtime::SpecularLight lobes_;
+    runtime::SoftwareOptions software_;
+    bool depends_on_eye_ = false;
+};
+
 void draw_on_cpu(const FrameOptions& options, const formats::AssetView& view,
                  const PictureLight& light, const runtime::Camera& camera, Shown shown,
                  std::uint32_t end, Drawing& drawing) {
-    formats::Vec3 shaded_for = camera.eye;
-    const runtime::PartLights lights = light.parts.lights();
-    auto start = bake::Clock::now();
-    std::vector<formats::Rgb> radiance = runtime::shade_for_picture(
-        view, lights, shaded_for, shown.terms, options.threads, shown.emitters);
-    const runtime::VolumeLight volumes = runtime::relight_volumes(
-        view.volumes, lights.light[lights.of_volumes],
-        {.terms = shown.terms, .emitters = shown.emitters, .threads = options.threads});
-    print_seconds(options, "dot products", bake::seconds_since(start));
-    runtime::SoftwareOptions software;
-    software.volumes = &volumes;
-    software.lights = lights;
-    software.threads = options.threads;
-    software.background = shown.background;
-    software.emitters = shown.emitters;
-    software.layers = shown.background && light.layers.layers ? &*light.layers.layers : nullptr;
-    runtime::SpecularLight specular;
-    if (const runtime::SpecularNeeds needs = runtime::specular_needs(view);
-        needs.any() && has_any(shown.terms, formats::TermSet::specular)) {
-        start = bake::Clock::now();
-        const OpenedLight mirrored = light.layers.mirrored(light.sky);
-        specular = runtime::make_specular_light(mirrored.environment, needs, mirrored.rotation,
-                                                options.threads);
-        software.specular = &specular;
-        print_seconds(options, "mirrored light", bake::seconds_since(start));
-    }
-    const bool depends_on_eye = std::ranges::any_of(view.primitives, [](const auto& primitive) {
-        return primitive.shading != formats::Shading::diffuse;
-    });
-    const auto draw = [&](const runtime::Camera& at, const runtime::SoftwareOptions& how) {
-        if (depends_on_eye && shaded_for != at.eye) {
-            shaded_for = at.eye;
-            radiance = runtime::shade_for_picture(view, lights, shaded_for, shown.terms,
-                                                  options.threads, shown.emitters);
-        }
-        return runtime::render_software(view, radiance, light.sky.environment, light.sky.rotation,
-                                        at, how);
-    };
-    runtime::SoftwareOptions metering = software;
-    metering.supersampling = 1;
-    metering.background = shown.background && !view.clouds.empty();
+    CpuFrames frames(options, view, light, camera, shown);
     write_frames(
-        options, camera, end, drawing,
-        [&](const runtime::Camera& at) { return draw(at, software); },
-        [&](const runtime::Camera& at) { return draw(at, metering); });
+        options, camera, end, drawing, [&](const runtime::Camera& at) { return frames.draw(at); },
+        [&](const runtime::Camera& at) { return frames.meter(at); });
 }
 
 void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
@@ -198,6 +237,14 @@ Shown show_terms(formats::TermSet terms, const formats::AssetView& view,
         view.volumes.empty() ? formats::TermSet::baked & ~kOfVolumes : formats::TermSet::baked;
     const bool shows_all = has_all(terms, possible);
     return {terms, shows_all, {emitters, shows_all}};
+}
+
+float meter_exposure(const formats::AssetView& view, const PictureLight& light,
+                     const runtime::Camera& camera, Shown shown, unsigned threads) {
+    FrameOptions options;
+    options.threads = threads;
+    return note_exposure(require(
+        CpuFrames(options, view, light, camera, shown).meter(runtime::meter_camera(camera))));
 }
 
 void print_seconds(const FrameOptions& options, const char* name, double seconds) {

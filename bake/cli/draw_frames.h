@@ -76,6 +76,11 @@ void draw_frames(const FrameOptions& options, const formats::AssetView& view,
                  const PictureLight& light, const runtime::Camera& camera, Shown shown,
                  std::uint32_t end, Drawing& drawing);
 
+/// The exposure that draw_frames chooses for a .png of this camera [EV], from a small picture drawn
+/// on the processor, with a note where it is not 0. Throws Refusal.
+float meter_exposure(const formats::AssetView& view, const PictureLight& light,
+                     const runtime::Camera& camera, Shown shown, unsigned threads);
+
 #ifdef OPALINE_HAS_GL
 /// A renderer for this light: the one that there is, unless surfaces mirror what has changed.
 formats::Status prepare_renderer(const formats::AssetView& view, const PictureLight& light,

@@ -83,9 +83,10 @@ int run_commands(int argc, const char* const* argv) {
 #ifdef OPALINE_HAS_GL
           add_view_command,
 #endif
-          add_export_web_command, add_help_command, add_plan_command, add_info_command,
-          add_verify_command, add_relight_command, add_reference_command, add_compare_command,
-          add_mie_command, add_phase_command, add_slab_command, add_sweep_command}) {
+          add_export_web_command, add_export_gltf_command, add_help_command, add_plan_command,
+          add_info_command, add_verify_command, add_relight_command, add_reference_command,
+          add_compare_command, add_mie_command, add_phase_command, add_slab_command,
+          add_sweep_command}) {
         add(program);
     }
     app.footer(

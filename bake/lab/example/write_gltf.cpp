@@ -1,98 +1,57 @@
 #include "bake/lab/example/write_gltf.h"
 
 #include <algorithm>
-#include <bit>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <utility>
 
+#include "formats/gltf/gltf_buffer.h"
 #include "formats/opal/atomic_file.h"
 
 namespace opaline::bake {
 namespace {
 
-// Keys in the order of writing: the file reads like the specification's examples.
-using Json = nlohmann::ordered_json;
+using Json = formats::GltfJson;
 
-// Values fixed by the glTF 2.0 specification.
-constexpr int kFloat = 5126, kUnsignedInt = 5125;
-constexpr int kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr const char* kReflectionExtension = "KHR_materials_specular";
 constexpr const char* kThinWallExtension = "KHR_materials_diffuse_transmission";
 constexpr const char* kEmissionExtension = "KHR_materials_emissive_strength";
 constexpr const char* kLightsExtension = "KHR_lights_punctual";
 
-void append(std::string& bytes, std::uint32_t word) {
-    for (int shift = 0; shift < 32; shift += 8) {
-        bytes.push_back(static_cast<char>(word >> shift & 0xffu));
-    }
-}
-
-/// Both files while they grow. Every element is a 4-byte word, so all views stay aligned.
-struct Draft {
-    Json views = Json::array(), accessors = Json::array();
-    std::string bytes;
-};
-
-/// Adds a view of `count` elements from `offset` to the end of the bytes, and the accessor of all
-/// of it; returns the accessor's index.
-std::size_t add_accessor(Draft& draft, std::size_t offset, int target, int component,
-                         const char* type, std::size_t count) {
-    draft.views.push_back({{"buffer", 0},
-                           {"byteOffset", offset},
-                           {"byteLength", draft.bytes.size() - offset},
-                           {"target", target}});
-    draft.accessors.push_back({{"bufferView", draft.views.size() - 1},
-                               {"componentType", component},
-                               {"count", count},
-                               {"type", type}});
-    return draft.accessors.size() - 1;
-}
-
-/// Adds vectors as floats, with the smallest and largest of each coordinate as they were rounded.
-std::size_t add_vectors(Draft& draft, const std::vector<glm::dvec3>& vectors) {
-    const std::size_t offset = draft.bytes.size();
-    glm::vec3 low(vectors.front()), high(low);
+// Millimetres and formulas are in double precision, files in single.
+std::vector<formats::Vec3> narrow(const std::vector<glm::dvec3>& vectors) {
+    std::vector<formats::Vec3> narrowed;
+    narrowed.reserve(vectors.size());
     for (const glm::dvec3& exact : vectors) {
-        const glm::vec3 vector(exact);
-        low = glm::min(low, vector);
-        high = glm::max(high, vector);
-        for (int axis = 0; axis < 3; ++axis) {
-            append(draft.bytes, std::bit_cast<std::uint32_t>(vector[axis]));
-        }
+        const glm::vec3 v(exact);
+        narrowed.push_back({v.x, v.y, v.z});
     }
-    const std::size_t index =
-        add_accessor(draft, offset, kArrayBuffer, kFloat, "VEC3", vectors.size());
-    draft.accessors[index]["min"] = {low.x, low.y, low.z};
-    draft.accessors[index]["max"] = {high.x, high.y, high.z};
-    return index;
+    return narrowed;
 }
 
-std::size_t add_texture_coordinates(Draft& draft, const std::vector<glm::dvec2>& coordinates) {
-    const std::size_t offset = draft.bytes.size();
+std::size_t add_vectors(formats::GltfBuffer& buffer, const std::vector<glm::dvec3>& vectors) {
+    return buffer.add_vectors<formats::Vec3>(narrow(vectors), formats::Bounds::stated);
+}
+
+std::size_t add_coordinates(formats::GltfBuffer& buffer,
+                            const std::vector<glm::dvec2>& coordinates) {
+    std::vector<formats::Float2> narrowed;
+    narrowed.reserve(coordinates.size());
     for (const glm::dvec2& exact : coordinates) {
-        append(draft.bytes, std::bit_cast<std::uint32_t>(static_cast<float>(exact.x)));
-        append(draft.bytes, std::bit_cast<std::uint32_t>(static_cast<float>(exact.y)));
+        const glm::vec2 v(exact);
+        narrowed.push_back({v.x, v.y});
     }
-    return add_accessor(draft, offset, kArrayBuffer, kFloat, "VEC2", coordinates.size());
+    return buffer.add_vectors<formats::Float2>(narrowed, formats::Bounds::none);
 }
 
-std::size_t add_indices(Draft& draft, const TriangleMesh& mesh) {
-    const std::size_t offset = draft.bytes.size();
-    std::uint32_t low = mesh.triangles.front()[0], high = low;
+std::size_t add_corners(formats::GltfBuffer& buffer, const TriangleMesh& mesh) {
+    std::vector<std::uint32_t> corners;
+    corners.reserve(3 * mesh.triangles.size());
     for (const Triangle& triangle : mesh.triangles) {
-        for (const std::uint32_t v : triangle) {
-            append(draft.bytes, v);
-            low = std::min(low, v);
-            high = std::max(high, v);
-        }
+        corners.insert(corners.end(), triangle.begin(), triangle.end());
     }
-    const std::size_t index = add_accessor(draft, offset, kElementArrayBuffer, kUnsignedInt,
-                                           "SCALAR", 3 * mesh.triangles.size());
-    draft.accessors[index]["min"] = {low};
-    draft.accessors[index]["max"] = {high};
-    return index;
+    return buffer.add_indices(corners);
 }
 
 void name_once(Json& extensions, const char* name) {
@@ -118,7 +77,7 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
     const std::filesystem::path& folder, const std::string& name,
     const std::vector<GltfObject>& objects, const std::string& media,
     const std::vector<GltfPointLight>& lights) {
-    Draft draft;
+    formats::GltfBuffer buffer;
     Json nodes = Json::array(), roots = Json::array();
     Json meshes = Json::array(), materials = Json::array(), images = Json::array();
     Json extensions = Json::array({kReflectionExtension});
@@ -127,13 +86,13 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
         assert(object.mesh.normal.size() == object.mesh.position.size());
         roots.push_back(nodes.size());
         nodes.push_back({{"name", object.name}, {"mesh", meshes.size()}});
-        const std::size_t position = add_vectors(draft, object.mesh.position);
-        const std::size_t normal = add_vectors(draft, object.mesh.normal);
-        const std::size_t indices = add_indices(draft, object.mesh);
+        const std::size_t position = add_vectors(buffer, object.mesh.position);
+        const std::size_t normal = add_vectors(buffer, object.mesh.normal);
+        const std::size_t indices = add_corners(buffer, object.mesh);
         Json attributes = {{"POSITION", position}, {"NORMAL", normal}};
         if (!object.image.empty() || !object.normal_map.empty()) {
             assert(object.texcoord.size() == object.mesh.position.size());
-            attributes["TEXCOORD_0"] = add_texture_coordinates(draft, object.texcoord);
+            attributes["TEXCOORD_0"] = add_coordinates(buffer, object.texcoord);
         }
         const Json primitive = {
             {"attributes", attributes}, {"indices", indices}, {"material", materials.size()}};
@@ -191,9 +150,10 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
         {"nodes", nodes},
         {"meshes", meshes},
         {"materials", materials},
-        {"accessors", draft.accessors},
-        {"bufferViews", draft.views},
-        {"buffers", Json::array({{{"uri", name + ".bin"}, {"byteLength", draft.bytes.size()}}})}};
+        {"accessors", buffer.accessors()},
+        {"bufferViews", buffer.views()},
+        {"buffers",
+         Json::array({{{"uri", name + ".bin"}, {"byteLength", buffer.bytes().size()}}})}};
 
     if (!images.empty()) {
         document["images"] = images;
@@ -211,7 +171,7 @@ formats::Result<std::vector<std::filesystem::path>> write_gltf(
     }
     const std::vector<std::filesystem::path> files = {folder / (name + ".bin"),
                                                       folder / (name + ".gltf")};
-    const std::string contents[] = {std::move(draft.bytes), document.dump(2) + "\n"};
+    const std::string contents[] = {buffer.bytes(), document.dump(2) + "\n"};
     for (std::size_t i = 0; i < files.size(); ++i) {
         if (formats::Status written = formats::write_file_atomically(files[i], contents[i]);
             !written) {
