@@ -1,12 +1,14 @@
 // The glTF file that `export-gltf` writes; tests/gltf_viewers.sh looks at it in viewers.
 #include <gmock/gmock.h>
 
-#include <cmath>
+#include <array>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 
 #include "tests/cli/small_scene.h"
+#include "tests/formats/opal/asset_fixture.h"
 #include "tests/formats/opal/volume_fixture.h"
 
 namespace opaline::tests {
@@ -14,6 +16,29 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+// COLOR_0 of a file and the radiance of `relight`, both of two primitives of four vertices, agree
+// up to a factor of each primitive.
+void expect_colors(const formats::Scene& scene, const std::string& table,
+                   const std::array<double, 2>& factor) {
+    std::istringstream lines(table);
+    std::string line;
+    std::getline(lines, line);
+    double sum = 0;
+    for (std::size_t p = 0; p < 2; ++p) {
+        for (std::size_t v = 0; v < 4; ++v) {
+            std::getline(lines, line);
+            double r = 0, g = 0, b = 0;
+            ASSERT_EQ(std::sscanf(line.c_str(), "%*u,%*u,%lf,%lf,%lf", &r, &g, &b), 3);
+            const formats::Rgb color = scene.primitives[p].color[v];
+            EXPECT_NEAR(color.r, r * factor[p], 1e-6 * r);
+            EXPECT_NEAR(color.g, g * factor[p], 1e-6 * g);
+            EXPECT_NEAR(color.b, b * factor[p], 1e-6 * b);
+            sum += r;
+        }
+    }
+    EXPECT_GT(sum, 0.1);
+}
 
 TEST(ExportGltf, ColoursAreTheRadianceThatRelightStatesTimesTheExposure) {
     SmallScene small;
@@ -25,25 +50,20 @@ TEST(ExportGltf, ColoursAreTheRadianceThatRelightStatesTimesTheExposure) {
     EXPECT_THAT(outcome.err, Not(HasSubstr("clipped")));
     const auto imported = formats::import_gltf(small.path("a.glb"));
     ASSERT_TRUE(imported);
-    const formats::Scene& scene = imported->scene;
-    std::istringstream table(read_text(small.path("a.csv")));
-    std::string line;
-    std::getline(table, line);
-    double sum = 0;
-    for (std::size_t p = 0; p < 2; ++p) {
-        for (std::size_t v = 0; v < 4; ++v) {
-            std::getline(table, line);
-            double r = 0, g = 0, b = 0;
-            ASSERT_EQ(std::sscanf(line.c_str(), "%*u,%*u,%lf,%lf,%lf", &r, &g, &b), 3);
-            const formats::Rgb color = scene.primitives[p].color[v];
-            EXPECT_NEAR(color.r, r / 4, 1e-6 * r);
-            EXPECT_NEAR(color.g, g / 4, 1e-6 * g);
-            EXPECT_NEAR(color.b, b / 4, 1e-6 * b);
-            sum += r;
-        }
-    }
-    EXPECT_GT(sum, 0.1);
-    EXPECT_THAT(scene.materials[scene.primitives[1].material].name, "Brick");
+    expect_colors(imported->scene, read_text(small.path("a.csv")), {0.25, 0.25});
+    EXPECT_EQ(imported->scene.materials[imported->scene.primitives[1].material].name, "Brick");
+}
+
+// The image of the second primitive repeats, and its mean is a half: so it is in all four corners.
+TEST(ExportGltf, ColoursOfASurfaceWithAnImageAreWithoutIt) {
+    SmallScene small;
+    const std::string file = small.write(make_small_asset(), "image.opal");
+    run_well({"relight", file, "--light", "studio", "-o", small.path("a.csv")});
+    run_well(
+        {"export-gltf", file, "--light", "studio", "--exposure", "-8", "-o", small.path("a.glb")});
+    const auto imported = formats::import_gltf(small.path("a.glb"));
+    ASSERT_TRUE(imported);
+    expect_colors(imported->scene, read_text(small.path("a.csv")), {1.0 / 256, 2.0 / 256});
 }
 
 TEST(ExportGltf, ExposureIsChosenAsForAPictureAndClippingIsSaid) {
