@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # What CI leaves out: benchmarks and every header compiled by itself; all tests of the g++ release build; the whole suite
-# under the address and undefined-behaviour sanitizers; what uses several threads under the thread sanitizer. Ends with a
-# summary. Hours on 2 cores. Parts can be named: deep.sh [release] [asan] [tsan].
+# under the address and undefined-behaviour sanitizers; what uses several threads under the thread sanitizer; glTF files in
+# other programs, where there is npm. Ends with a summary. Hours on 2 cores. Parts can be named: deep.sh [release] [viewers]
+# [asan] [tsan]; viewers needs the build of release.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 parts=("$@")
-[ $# -gt 0 ] || parts=(release asan tsan)
+[ $# -gt 0 ] || parts=(release viewers asan tsan)
 
 # run_suite PRESET CTEST-ARGUMENTS...: builds and tests; leaves build-PRESET/test-results.xml.
 run_suite() {
@@ -31,9 +32,10 @@ failed=0
 for part in "${parts[@]}"; do
     case $part in
         release) run_suite release || failed=1 ;;
+        viewers) bash tests/gltf_viewers.sh build-release || [ $? -eq 77 ] || failed=1 ;;
         asan) run_suite asan -LE build || failed=1 ;;  # compiling headers by themselves finds nothing more there
         tsan) run_threads || failed=1 ;;
-        *) echo "usage: deep.sh [release] [asan] [tsan]" >&2; exit 2 ;;
+        *) echo "usage: deep.sh [release] [viewers] [asan] [tsan]" >&2; exit 2 ;;
     esac
 done
 for part in "${parts[@]}"; do
