@@ -34,6 +34,9 @@ struct Job {
     SurfaceMaterial material;
 
     const formats::PrimitiveRecord& primitive() const { return *material.primitive; }
+    bool is_translucent() const { return primitive().shading == formats::Shading::translucent; }
+    // What surfaces reflect or send out by themselves is added to what rows say.
+    bool is_glossy() const { return material.gloss != nullptr && options.fresnel; }
 };
 
 Rgb base_color_of(const Job& job, std::uint32_t vertex) {
@@ -59,35 +62,63 @@ ViewOfReceiver view_of(const Job& job, std::uint32_t vertex) {
 
 // <T_k, L> and the light of emitters; rows count from the primitive's first one.
 void dot_and_emit(const Job& job, std::uint32_t first_row, std::span<Rgb> out) {
-    dot_rows(job.asset.transport, job.primitive().rows(), job.light, first_row, out,
+    dot_rows(job.asset.transport, job.asset.rows_of(job.number), job.light, first_row, out,
              job.options.path);
     add_emitters(job.asset.emitters, job.options.emitters, job.number, first_row, out);
 }
 
-// <T_0, L> of each vertex; <T_1, L> of a thin-walled surface that is seen from behind.
-void dot_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
-    const formats::PrimitiveRecord& primitive = job.primitive();
-    const std::uint32_t first = first_vertex - primitive.first_vertex;
-    if (primitive.shading == formats::Shading::diffuse) {
-        dot_and_emit(job, first, out);
+// <T_0, L> of each slot; <T_1, L> of a thin-walled surface that is seen from behind.
+void dot_opaque_slots(const Job& job, std::uint32_t first_slot, std::span<Rgb> out) {
+    if (job.primitive().shading == formats::Shading::diffuse) {
+        dot_and_emit(job, first_slot, out);
         return;
     }
     for (std::uint32_t i = 0; i < out.size(); ++i) {
-        const std::uint32_t vertex = first_vertex + i;
+        const std::uint32_t slot = first_slot + i, vertex = job.asset.vertex_of(job.number, slot);
         const bool behind = is_seen_from_behind(job.asset.position[vertex],
                                                 job.asset.normal[vertex], job.options.eye);
-        dot_and_emit(job, 2 * (first + i) + (behind ? 1 : 0), out.subspan(i, 1));
+        dot_and_emit(job, 2 * slot + (behind ? 1 : 0), out.subspan(i, 1));
     }
 }
 
-void shade_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
-    const bool is_glossy = job.material.gloss != nullptr && job.options.fresnel;
-    if (has_any(job.options.terms, TermSet::diffuse)) {
-        dot_opaque_block(job, first_vertex, out);
-    } else if (!is_glossy && job.material.own == nullptr) {
-        return;  // out is black
+// Calls show(i, <T_k, L> of slot first_slot + i) for i < count. Rows of several terms: as many
+// slots at a time as fill a block.
+template <class Show>
+void dot_translucent_slots(const Job& job, std::uint32_t first_slot, std::uint32_t count,
+                           const Show& show) {
+    static_assert(kBlock > formats::kMaxHarmonics);
+    std::array<Rgb, kBlock> products;
+    const std::uint32_t terms = job.primitive().terms, step = kBlock / terms;
+    for (std::uint32_t done = 0; done < count; done += step) {
+        const std::uint32_t part = std::min(step, count - done);
+        const std::span<Rgb> block = std::span<Rgb>(products).first(std::size_t{part} * terms);
+        dot_and_emit(job, (first_slot + done) * terms, block);
+        for (std::uint32_t i = 0; i < part; ++i) {
+            show(done + i, block.subspan(std::size_t{i} * terms, terms));
+        }
     }
-    if (!is_glossy && job.material.own == nullptr) {
+}
+
+// What rows say of consecutive slots, as their first vertices are seen.
+void sum_slots(const Job& job, std::uint32_t first_slot, std::span<Rgb> out) {
+    if (job.is_translucent()) {
+        dot_translucent_slots(job, first_slot, static_cast<std::uint32_t>(out.size()),
+                              [&](std::uint32_t i, std::span<const Rgb> product) {
+                                  const std::uint32_t vertex =
+                                      job.asset.vertex_of(job.number, first_slot + i);
+                                  out[i] = sum_view_terms(view_of(job, vertex), job.primitive(),
+                                                          product, job.options.terms);
+                              });
+    } else if (has_any(job.options.terms, TermSet::diffuse)) {
+        dot_opaque_slots(job, first_slot, out);
+    } else {
+        std::fill(out.begin(), out.end(), Rgb{});
+    }
+}
+
+// Of what rows say of opaque vertices, what they show.
+void finish_opaque(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
+    if (!job.is_glossy() && job.material.own == nullptr) {
         // As shade_surface() does it, without its cost: the rows take no longer than that.
         for (std::uint32_t i = 0; i < out.size(); ++i) {
             out[i] = displayable(out[i] * base_color_of(job, first_vertex + i));
@@ -95,14 +126,14 @@ void shade_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rg
         return;
     }
     SurfaceMaterial material = job.material;
-    if (!is_glossy) material.gloss = nullptr;
+    if (!job.is_glossy()) material.gloss = nullptr;
     for (std::uint32_t i = 0; i < out.size(); ++i) {
         const std::uint32_t vertex = first_vertex + i;
         SurfacePoint point;
         point.radiance = out[i];
         point.base_color = base_color_of(job, vertex);
         set_own_light(job.asset, material, texcoord_of(job, vertex), point);
-        if (is_glossy) {
+        if (job.is_glossy()) {
             point.view = view_of(job, vertex);
             set_gloss_factors(job.asset, material, texcoord_of(job, vertex), point);
             set_openness(job, vertex, point);
@@ -111,33 +142,98 @@ void shade_opaque_block(const Job& job, std::uint32_t first_vertex, std::span<Rg
     }
 }
 
-Rgb shade_translucent(const Job& job, std::uint32_t vertex, std::span<const Rgb> product) {
+Rgb finish_translucent(const Job& job, std::uint32_t vertex, const ViewOfReceiver& view,
+                       Rgb radiance) {
     SurfacePoint point;
-    point.view = view_of(job, vertex);
-    point.radiance = sum_view_terms(point.view, job.primitive(), product, job.options.terms);
+    point.view = view;
+    point.radiance = radiance;
     point.base_color = base_color_of(job, vertex);
     if (!job.options.fresnel) {
-        const Rgb radiance = point.radiance * point.base_color;
-        return {finite(radiance.r), finite(radiance.g), finite(radiance.b)};
+        const Rgb shown = point.radiance * point.base_color;
+        return {finite(shown.r), finite(shown.g), finite(shown.b)};
     }
     if (job.material.lobe.is_glossy) set_openness(job, vertex, point);
     set_own_light(job.asset, job.material, texcoord_of(job, vertex), point);
     return shade_surface(job.material, point);
 }
 
-// Rows of several terms: as many vertices at a time as fill a block.
-void shade_translucent_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
-    static_assert(kBlock > formats::kMaxHarmonics);
-    std::array<Rgb, kBlock> products;
-    const std::uint32_t terms = job.primitive().terms, step = kBlock / terms;
-    for (std::uint32_t done = 0; done < out.size(); done += step) {
-        const std::uint32_t count = std::min(step, static_cast<std::uint32_t>(out.size()) - done);
-        const std::span<Rgb> block = std::span<Rgb>(products).first(std::size_t{count} * terms);
-        dot_and_emit(job, (first_vertex + done - job.primitive().first_vertex) * terms, block);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            out[done + i] = shade_translucent(job, first_vertex + done + i,
-                                              block.subspan(std::size_t{i} * terms, terms));
+// Vertices that share no rows, a block of them. Each is a slot.
+void shade_block(const Job& job, std::uint32_t first_vertex, std::span<Rgb> out) {
+    const std::uint32_t first_slot = first_vertex - job.primitive().first_vertex;
+    if (!job.is_translucent()) {
+        sum_slots(job, first_slot, out);
+        finish_opaque(job, first_vertex, out);
+        return;
+    }
+    dot_translucent_slots(
+        job, first_slot, static_cast<std::uint32_t>(out.size()),
+        [&](std::uint32_t i, std::span<const Rgb> product) {
+            const ViewOfReceiver view = view_of(job, first_vertex + i);
+            out[i] = finish_translucent(
+                job, first_vertex + i, view,
+                sum_view_terms(view, job.primitive(), product, job.options.terms));
+        });
+}
+
+// Vertices begin .. end - 1, and the results of those from `first` on.
+struct ShadedPart {
+    std::uint32_t begin, end, first;
+    std::span<Rgb> out;
+
+    Rgb& at(std::uint32_t vertex) const { return out[vertex - first]; }
+    std::span<Rgb> from(std::uint32_t vertex, std::uint32_t count) const {
+        return out.subspan(vertex - first, count);
+    }
+};
+
+void shade_vertices(const Job& job, const ShadedPart& part) {
+    for (std::uint32_t v = part.begin; v < part.end;) {
+        const std::uint32_t count = std::min(kBlock, part.end - v);
+        shade_block(job, v, part.from(v, count));
+        v += count;
+    }
+}
+
+// Vertices that share rows, in three steps, since what a vertex shows is seen at an earlier one.
+// Each step may be taken for all vertices before the next one.
+
+// The first vertices of slots. Their slots are consecutive: they are numbered as they appear.
+void sum_first_vertices(const Job& job, const ShadedPart& part) {
+    const formats::SlotsView& slots = job.asset.slots;
+    const auto own = slots.vertex.subspan(slots.offset[job.number], slots.count(job.number));
+    const auto number_before = [&](std::uint32_t vertex) {
+        return static_cast<std::uint32_t>(std::ranges::lower_bound(own, vertex) - own.begin());
+    };
+    std::array<Rgb, kBlock> sums;
+    const std::uint32_t last = number_before(part.end);
+    for (std::uint32_t slot = number_before(part.begin); slot < last;) {
+        const std::span<Rgb> block = std::span(sums).first(std::min(kBlock, last - slot));
+        sum_slots(job, slot, block);
+        for (const Rgb& sum : block) {
+            part.at(own[slot++]) = sum;
         }
+    }
+}
+
+void sum_other_vertices(const Job& job, const ShadedPart& part) {
+    for (std::uint32_t v = part.begin; v < part.end; ++v) {
+        const std::uint32_t slot = job.asset.slot_of(job.number, v),
+                            shown = job.asset.vertex_of(job.number, slot);
+        if (shown < part.first) {
+            sum_slots(job, slot, part.from(v, 1));
+        } else if (shown != v) {
+            part.at(v) = part.at(shown);
+        }
+    }
+}
+
+void finish_vertices(const Job& job, const ShadedPart& part) {
+    if (!job.is_translucent()) {
+        finish_opaque(job, part.begin, part.from(part.begin, part.end - part.begin));
+        return;
+    }
+    for (std::uint32_t v = part.begin; v < part.end; ++v) {
+        part.at(v) = finish_translucent(job, v, view_of(job, v), part.at(v));
     }
 }
 
@@ -146,36 +242,55 @@ EmitterLight own_lights(const ShadeOptions& options) {
     return options.base_color && options.fresnel ? options.emitters : dark_emitters();
 }
 
+using Step = void (*)(const Job&, const ShadedPart&);
+
+// Takes a step for the vertices of a part, primitive by primitive.
+void take_step(const formats::AssetView& asset, const PartLights& light, const ShadedPart& part,
+               const ShadeOptions& options, Step step) {
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        const formats::PrimitiveRecord& primitive = asset.primitives[p];
+        const auto end = static_cast<std::uint32_t>(std::min<std::uint64_t>(
+            part.end, std::uint64_t{primitive.first_vertex} + primitive.vertex_count));
+        const std::uint32_t begin = std::max(part.begin, primitive.first_vertex);
+        if (begin >= end) continue;
+        const SpecularLight* const specular = options.fresnel ? options.specular : nullptr;
+        const Job job{asset, light.light[light.number(p)], options, static_cast<std::uint32_t>(p),
+                      surface_material(asset, p, options.terms, specular, own_lights(options))};
+        step(job, {begin, end, part.first, part.out});
+    }
+}
+
+// Calls take(step) for each step in turn; where no vertices share rows there is one.
+template <class Take>
+void for_steps(const formats::AssetView& asset, const Take& take) {
+    if (asset.slots.empty()) {
+        take(shade_vertices);
+        return;
+    }
+    for (const Step step : {sum_first_vertices, sum_other_vertices, finish_vertices}) {
+        take(step);
+    }
+}
+
 }  // namespace
 
 void shade_range(const formats::AssetView& asset, const PartLights& light, std::uint32_t first,
                  std::span<Rgb> out, const ShadeOptions& options) {
     std::fill(out.begin(), out.end(), Rgb{});
-    const std::uint64_t last = first + std::uint64_t{out.size()};
-    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
-        const formats::PrimitiveRecord& primitive = asset.primitives[p];
-        const std::uint64_t end =
-            std::min(last, std::uint64_t{primitive.first_vertex} + primitive.vertex_count);
-        if (first >= end) continue;
-        const SpecularLight* const specular = options.fresnel ? options.specular : nullptr;
-        const Job job{asset, light.light[light.number(p)], options, static_cast<std::uint32_t>(p),
-                      surface_material(asset, p, options.terms, specular, own_lights(options))};
-        for (std::uint64_t v = std::max(first, primitive.first_vertex); v < end; v += kBlock) {
-            const std::size_t count = std::min<std::uint64_t>(kBlock, end - v);
-            (primitive.shading == formats::Shading::translucent ? shade_translucent_block
-                                                                : shade_opaque_block)(
-                job, static_cast<std::uint32_t>(v), out.subspan(v - first, count));
-        }
-    }
+    const ShadedPart all{first, first + static_cast<std::uint32_t>(out.size()), first, out};
+    for_steps(asset, [&](Step step) { take_step(asset, light, all, options, step); });
 }
 
 void shade(const formats::AssetView& asset, const PartLights& light, std::span<Rgb> out,
            const ShadeOptions& options) {
     constexpr std::uint32_t kGrain = 2048;  // some microseconds of work for each claim of a range
-    for_ranges(asset.receivers(), kGrain, options.threads,
-               [&](std::uint32_t begin, std::uint32_t end) {
-                   shade_range(asset, light, begin, out.subspan(begin, end - begin), options);
-               });
+    std::fill(out.begin(), out.end(), Rgb{});
+    for_steps(asset, [&](Step step) {
+        for_ranges(asset.receivers(), kGrain, options.threads,
+                   [&](std::uint32_t begin, std::uint32_t end) {
+                       take_step(asset, light, {begin, end, 0, out}, options, step);
+                   });
+    });
 }
 
 std::vector<Rgb> shade_for_picture(const formats::AssetView& asset, const PartLights& light,

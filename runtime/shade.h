@@ -48,7 +48,8 @@ void shade(const formats::AssetView& asset, const PartLights& light, std::span<f
            const ShadeOptions& options = {});
 
 /// The same for receivers first .. first + out.size(), on the calling thread; never allocates.
-/// `options.threads` does not matter.
+/// `options.threads` does not matter. What receivers share with one before `first` is computed for
+/// each of them.
 void shade_range(const formats::AssetView& asset, const PartLights& light, std::uint32_t first,
                  std::span<formats::Rgb> out, const ShadeOptions& options = {});
 

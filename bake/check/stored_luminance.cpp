@@ -77,7 +77,7 @@ Luminance relight_rows(const RowSource& source, std::span<const float> h,
 Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point,
                         const RowLayout& layout, std::span<const TestLight> lights) {
     const formats::PrimitiveRecord& primitive = asset.primitives[point.primitive];
-    const formats::RowRange range = primitive.rows();
+    const formats::RowRange range = asset.rows_of(point.primitive);
     const std::size_t size = lights.front().coarse.size();
     std::vector<float> band(size), sum(size);
     for (std::size_t k = 0; k < point.vertex.size(); ++k) {
@@ -86,8 +86,8 @@ Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point
         const std::vector<float> h =
             layout.translucent ? view_from_far(layout, primitive.eta, asset.normal[v], point.view())
                                : view_of_rows(layout, point.body.normal, point.behind);
-        add_luminance({asset.transport, range, (v - primitive.first_vertex) * primitive.terms}, h,
-                      point.weight[k], {band, sum});
+        add_luminance({asset.transport, range, asset.slot_of(point.primitive, v) * primitive.terms},
+                      h, point.weight[k], {band, sum});
     }
     return relit_by_each(sum, lights);
 }

@@ -98,8 +98,8 @@ void append_chosen(const SparseRowsView& from, const RowPlace& place,
 
 std::uint64_t rows_of_primitives(const formats::AssetView& asset) {
     std::uint64_t rows = 0;
-    for (const PrimitiveRecord& primitive : asset.primitives) {
-        rows += primitive.rows().rows;
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        rows += asset.rows_of(p).rows;
     }
     return rows;
 }
@@ -125,8 +125,9 @@ formats::Result<ShortRows> shorten_rows(const formats::AssetView& asset, std::ui
     out.rows.cubemap_size = from.cubemap_size;
     out.rows.code_bits = from.code_bits;
     out.rows.index_bytes = from.index_bytes;
-    for (PrimitiveRecord& primitive : out.primitives) {
-        const formats::RowRange range = primitive.rows();
+    for (std::size_t p = 0; p < out.primitives.size(); ++p) {
+        PrimitiveRecord& primitive = out.primitives[p];
+        const formats::RowRange range = asset.rows_of(p);
         primitive.first_row = static_cast<std::uint32_t>(out.rows.row_offset.size() - 1);
         primitive.first_band_row = static_cast<std::uint32_t>(out.rows.detail_scale.size());
         primitive.first_code = out.rows.code8.size() + out.rows.code16.size();
@@ -147,8 +148,8 @@ formats::Result<ShortRows> shorten_rows(const formats::AssetView& asset, std::ui
 
 std::uint32_t longest_row(const formats::AssetView& asset) {
     std::uint32_t most = 0;
-    for (const PrimitiveRecord& primitive : asset.primitives) {
-        const formats::RowRange range = primitive.rows();
+    for (std::size_t p = 0; p < asset.primitives.size(); ++p) {
+        const formats::RowRange range = asset.rows_of(p);
         for (std::uint32_t row = range.first_row; row < range.first_row + range.rows; ++row) {
             most = std::max(most, kCubeFaces + asset.transport.row_offset[row + 1] -
                                       asset.transport.row_offset[row]);

@@ -17,6 +17,7 @@
 #include "formats/opal/openness.h"
 #include "formats/opal/preview_image.h"
 #include "formats/opal/rgb.h"
+#include "formats/opal/slots.h"
 #include "formats/opal/sparse_rows.h"
 #include "formats/opal/vec3.h"
 #include "formats/opal/volumes.h"
@@ -57,7 +58,8 @@ enum class Shading : std::uint32_t {
 };
 
 /// One glTF primitive of one node instance. Receivers and vertices are the same thing: row
-/// (v - first_vertex) * terms + k is T_k of vertex v. Fixed size, stored as is.
+/// s * terms + k is T_k of a vertex with slot s of the primitive (AssetView::slot_of), which is
+/// v - first_vertex where no vertices share rows. Fixed size, stored as is.
 struct PrimitiveRecord {
     std::uint32_t node = 0, mesh = 0, primitive = 0, material = 0;  ///< indices in the source file
     std::uint32_t first_vertex = 0, vertex_count = 0;
@@ -84,8 +86,9 @@ struct PrimitiveRecord {
     bool is_separate() const { return (flags & kSeparate) != 0; }
     bool is_single_only() const { return (flags & kSingleOnly) != 0; }
 
-    RowRange rows() const {
-        return {first_row, vertex_count * terms, bands, first_band_row, first_code};
+    /// Of so many slots, or vertices where they share none.
+    RowRange rows(std::uint32_t slots) const {
+        return {first_row, slots * terms, bands, first_band_row, first_code};
     }
 };
 static_assert(sizeof(PrimitiveRecord) == 80);
@@ -101,6 +104,7 @@ struct AssetView {
     Pairing pairing = Pairing::light_carries_solid_angle;
     std::span<const PrimitiveRecord> primitives;
     SparseRowsView transport;
+    SlotsView slots;                   ///< which vertices share rows; empty: none
     std::span<const Vec3> position;    ///< [m], world
     std::span<const Vec3> normal;      ///< unit
     std::span<const Rgb> base_color;   ///< factor times vertex colour; the image comes on top
@@ -121,6 +125,22 @@ struct AssetView {
     EmittersView emitters;       ///< light that is not the environment's; empty without any
 
     std::uint32_t receivers() const { return static_cast<std::uint32_t>(position.size()); }
+    std::uint32_t slot_count(std::size_t primitive) const {
+        return slots.empty() ? primitives[primitive].vertex_count : slots.count(primitive);
+    }
+    RowRange rows_of(std::size_t primitive) const {
+        return primitives[primitive].rows(slot_count(primitive));
+    }
+    /// Slot of a vertex of that primitive, counted from the primitive's first one.
+    std::uint32_t slot_of(std::size_t primitive, std::uint32_t vertex) const {
+        return slots.empty() ? vertex - primitives[primitive].first_vertex
+                             : slots.slot[vertex] - slots.offset[primitive];
+    }
+    /// The first vertex that has a slot of that primitive.
+    std::uint32_t vertex_of(std::size_t primitive, std::uint32_t slot) const {
+        return slots.empty() ? primitives[primitive].first_vertex + slot
+                             : slots.vertex[slots.offset[primitive] + slot];
+    }
 };
 
 /// The primitive that a receiver belongs to. Precondition: receiver < asset.receivers().
@@ -131,6 +151,7 @@ struct Asset {
     std::string provenance;
     std::vector<PrimitiveRecord> primitives;
     SparseRows transport;
+    Slots slots;  ///< empty: no vertices share rows
     std::vector<Vec3> position, normal;
     std::vector<Rgb> base_color;
     std::vector<Float2> texcoord;

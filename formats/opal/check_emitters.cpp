@@ -46,7 +46,8 @@ std::string find_block_fault(const AssetView& asset, std::size_t i, UsedPart& us
                "know";
     }
     const PrimitiveRecord& primitive = asset.primitives[block.primitive];
-    const std::uint64_t values = std::uint64_t{3} * primitive.vertex_count * primitive.terms;
+    const std::uint64_t values =
+        std::uint64_t{3} * asset.slot_count(block.primitive) * primitive.terms;
     return used.take(block.first_value, values, emitters.value.size())
                ? ""
                : "its values lie outside their array, or overlap with those of another block";

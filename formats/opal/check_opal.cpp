@@ -110,7 +110,7 @@ Fault find_primitive_fault(const AssetView& asset, std::size_t i) {
     if (std::string fault = find_shading_fault(p); !fault.empty()) {
         return {primitive_name(i), std::move(fault)};
     }
-    const std::uint64_t row_count = std::uint64_t{p.vertex_count} * p.terms;
+    const std::uint64_t row_count = std::uint64_t{asset.slot_count(i)} * p.terms;
     if (!lies_inside(p.first_vertex, p.vertex_count, asset.position.size()) ||
         !lies_inside(p.first_index, p.index_count, asset.index.size()) || p.index_count % 3 != 0 ||
         !lies_inside(p.first_row, row_count, rows.rows()) ||

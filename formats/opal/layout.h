@@ -28,6 +28,13 @@ inline constexpr std::uint32_t kSingleOnlyVersion = 3;
 /// Section version of PRIM where a primitive has Shading::sheet, which earlier readers do not know.
 inline constexpr std::uint32_t kSheetVersion = 4;
 
+/// Section version of PRIM beside SHAR: earlier readers would take rows of slots for rows of
+/// vertices.
+inline constexpr std::uint32_t kSlotsVersion = 5;
+/// Section versions of MESH and SPEC there: positions, normals and openness are those of slots, and
+/// indices differences (slots_file.h).
+inline constexpr std::uint32_t kSlotsMeshVersion = 2, kSlotsSpecularVersion = 2;
+
 /// Section version of TRAN: 8-bit detail codes stand for their squares (detail_codes.h). Files of
 /// version 1, where they stood for themselves, are refused.
 inline constexpr std::uint32_t kTransportVersion = 2;
@@ -38,8 +45,14 @@ struct PrimitivesHead {
 };
 static_assert(sizeof(PrimitivesHead) == 16);
 
+struct SlotsHead {
+    std::uint32_t vertices = 0, reserved[3] = {};
+};
+static_assert(sizeof(SlotsHead) == 16);
+
 struct MeshHead {
-    std::uint32_t vertices = 0, indices = 0, texcoords = 0, reserved = 0;
+    std::uint32_t vertices = 0, indices = 0, texcoords = 0;
+    std::uint32_t slots = 0;  ///< kSlotsMeshVersion: as many positions and normals
 };
 static_assert(sizeof(MeshHead) == 16);
 

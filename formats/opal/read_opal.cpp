@@ -12,6 +12,7 @@
 #include "formats/opal/layout.h"
 #include "formats/opal/section_arrays.h"
 #include "formats/opal/sheet_shares.h"
+#include "formats/opal/slots_file.h"
 
 namespace opaline::formats {
 namespace {
@@ -33,10 +34,18 @@ bool read_primitives(SectionCursor cursor, AssetView& view) {
            cursor.take(head.count, view.primitives) && cursor.at_end();
 }
 
+// The codes, until restore_slots.
+bool read_slots(SectionCursor cursor, AssetView& view) {
+    SlotsHead head;
+    return cursor.take_one(head) && cursor.take(head.vertices, view.slots.slot) && cursor.at_end();
+}
+
 bool read_mesh(SectionCursor cursor, AssetView& view) {
     MeshHead head;
-    return cursor.take_one(head) && cursor.take(head.vertices, view.position) &&
-           cursor.take(head.vertices, view.normal) && cursor.take(head.vertices, view.base_color) &&
+    if (!cursor.take_one(head)) return false;
+    const std::uint32_t places = head.slots == 0 ? head.vertices : head.slots;
+    return cursor.take(places, view.position) && cursor.take(places, view.normal) &&
+           cursor.take(head.vertices, view.base_color) &&
            cursor.take(head.texcoords, view.texcoord) && cursor.take(head.indices, view.index) &&
            cursor.at_end();
 }
@@ -108,13 +117,14 @@ constexpr auto read_part(Part) {
 
 constexpr KnownSection kKnownSections[] = {
     {kBasiSection, read_basis, 1},
-    {kPrimSection, read_primitives, 2, 1, kSheetVersion},
+    {kPrimSection, read_primitives, 2, 1, kSlotsVersion},
     {kTranSection, read_part<take_rows>([](AssetView& v) -> auto& { return v.transport; }), 4,
      kTransportVersion, kTransportVersion},
-    {kMeshSection, read_mesh, 8},
+    {kSharSection, read_slots},
+    {kMeshSection, read_mesh, 8, 1, kSlotsMeshVersion},
     {kRefiSection, read_added},
     {kImagSection, read_images},
-    {kSpecSection, read_specular},
+    {kSpecSection, read_specular, 0, 1, kSlotsSpecularVersion},
     {kGlosSection, read_gloss},
     {kHoleSection, read_holes, 0, 1, kClearHolesVersion},
     {kNormSection, read_normal_maps, 0, 1, kMappedSheetVersion},
@@ -123,6 +133,25 @@ constexpr KnownSection kKnownSections[] = {
     {kEmitSection, read_part<take_emitters>([](AssetView& v) -> auto& { return v.emitters; })},
     {kGlowSection, read_part<take_glow>([](AssetView& v) -> auto& { return v.volumes.glow; })},
     {kProvSection, [](SectionCursor, AssetView&) { return true; }}};
+
+bool has_section(std::span<const SectionEntry> sections, std::uint32_t id) {
+    return std::ranges::find(sections, id, &SectionEntry::id) != sections.end();
+}
+
+// A section that is stored as beside SHAR without it, or the other way round; empty where none is.
+std::string find_slots_misfit(std::span<const SectionEntry> sections) {
+    const bool has_slots = has_section(sections, kSharSection);
+    for (const SectionEntry& entry : sections) {
+        const std::uint32_t own = entry.id == kPrimSection   ? kSlotsVersion
+                                  : entry.id == kMeshSection ? kSlotsMeshVersion
+                                  : entry.id == kSpecSection ? kSlotsSpecularVersion
+                                                             : 0;
+        if (own != 0 && (entry.version == own) != has_slots) {
+            return "section " + section_name(entry.id);
+        }
+    }
+    return {};
+}
 
 }  // namespace
 
@@ -152,6 +181,10 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
     const auto damaged = [&](std::string where, std::string fault) {
         return make_error(ErrorKind::bad_input, file, std::move(where), std::move(fault),
                           "the file is damaged: bake it again, or copy it again");
+    };
+    const auto no_memory = [&](std::string where, std::uint64_t size) {
+        return make_error(ErrorKind::resource, file, std::move(where),
+                          "no memory for " + std::to_string(size) + " bytes", "free some memory");
     };
     LoadedAsset loaded;
     loaded.sections = std::move(*table);
@@ -186,9 +219,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
             }
             DecodedBytes decoded(memory, static_cast<std::size_t>(entry.size));
             if (decoded.empty()) {
-                return make_error(ErrorKind::resource, file, where,
-                                  "no memory for " + std::to_string(entry.size) + " bytes",
-                                  "free some memory");
+                return no_memory(where, entry.size);
             }
             const std::size_t size =
                 ZSTD_decompress(decoded.data(), static_cast<std::size_t>(entry.size),
@@ -208,6 +239,20 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
         found |= known->bit;
     }
     if (found != 15) return damaged("section table", "BASI, PRIM, TRAN and MESH must all be there");
+    const std::string misfit = find_slots_misfit(loaded.sections);
+    if (!misfit.empty()) {
+        return damaged(misfit, "its version and a section SHAR do not go together");
+    }
+    if (has_section(loaded.sections, kSharSection)) {
+        DecodedBytes restored(memory, restored_size(loaded.view));
+        if (restored.empty()) return no_memory("section SHAR", restored_size(loaded.view));
+        if (const Fault fault =
+                restore_slots(loaded.view, {restored.data(), restored_size(loaded.view)});
+            !is_sound(fault)) {
+            return damaged(fault.where, fault.what);
+        }
+        loaded.decoded.push_back(std::move(restored));
+    }
     loaded.view.transport.cubemap_size = loaded.view.cubemap_size;
     loaded.view.volumes.rows.cubemap_size = loaded.view.cubemap_size;
     if (checks == Checks::sizes) {

@@ -9,12 +9,15 @@
 #include "formats/opal/section.h"
 #include "formats/opal/section_arrays.h"
 #include "formats/opal/sheet_shares.h"
+#include "formats/opal/slots_file.h"
 
 namespace opaline::formats {
 namespace {
 
 // Of PRIM: the earliest version that has all of it.
-std::uint32_t version_of(std::span<const PrimitiveRecord> primitives) {
+std::uint32_t version_of(const AssetView& asset) {
+    const std::span<const PrimitiveRecord> primitives = asset.primitives;
+    if (!asset.slots.empty()) return kSlotsVersion;
     const auto any = [&](auto has) {
         return std::any_of(primitives.begin(), primitives.end(), has);
     };
@@ -36,6 +39,8 @@ struct SectionHeads {
     BasisHead basis;
     PrimitivesHead primitives;
     TransportHead transport;
+    SlotsHead slots;
+    StoredSlots of_slots;  // empty where no vertices share rows
     MeshHead mesh;
     ImagesHead images;
     std::vector<ImageSize> image_sizes;
@@ -58,12 +63,18 @@ SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_
     heads.basis = {1, asset.cubemap_size, static_cast<std::uint32_t>(asset.pairing), 0};
     heads.primitives = {count(asset.primitives), sizeof(PrimitiveRecord), 0};
     heads.transport = rows_head(asset.transport);
-    heads.mesh = {asset.receivers(), count(asset.index), count(asset.texcoord), 0};
+    if (!asset.slots.empty()) heads.of_slots = store_slots(asset);
+    heads.slots.vertices = count(asset.slots.slot);
+    heads.mesh = {asset.receivers(), count(asset.index), count(asset.texcoord),
+                  count(asset.slots.vertex)};
     heads.images.count = static_cast<std::uint32_t>(asset.images.size());
     for (const PreviewImage& image : asset.images) {
         heads.image_sizes.push_back({image.width, image.height});
     }
-    heads.specular = {count(asset.roughness), count(asset.openness), {}};
+    heads.specular = {
+        count(asset.roughness),
+        asset.slots.empty() ? count(asset.openness) : count(std::span(heads.of_slots.openness)),
+        {}};
     heads.gloss = {count(asset.gloss), sizeof(GlossRecord), {}};
     heads.holes = {count(asset.holes.record), sizeof(HoleRecord), count(asset.holes.vertex_alpha),
                    0};
@@ -96,14 +107,19 @@ int level_of(Compression compression) {
 
 using Arrays = std::vector<std::span<const std::byte>>;
 
-StoredSection store_mesh(const AssetView& asset, const MeshHead& head) {
-    const Arrays arrays{bytes_of(head),
-                        std::as_bytes(asset.position),
-                        std::as_bytes(asset.normal),
-                        std::as_bytes(asset.base_color),
-                        std::as_bytes(asset.texcoord),
-                        std::as_bytes(asset.index)};
-    return store_arrays(kMeshSection, kSmallLevel, arrays);
+StoredSection store_mesh(const AssetView& asset, const SectionHeads& heads) {
+    const StoredSlots& slots = heads.of_slots;
+    const bool shares = !asset.slots.empty();
+    const Arrays arrays{
+        bytes_of(heads.mesh),
+        std::as_bytes(shares ? std::span<const Vec3>(slots.position) : asset.position),
+        std::as_bytes(shares ? std::span<const Vec3>(slots.normal) : asset.normal),
+        std::as_bytes(asset.base_color),
+        std::as_bytes(asset.texcoord),
+        std::as_bytes(shares ? std::span<const std::uint32_t>(slots.index) : asset.index)};
+    StoredSection section = store_arrays(kMeshSection, kSmallLevel, arrays);
+    section.entry.version = shares ? kSlotsMeshVersion : 1;
+    return section;
 }
 
 // Images compress well or are small.
@@ -120,6 +136,7 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
                                           std::span<const float> receiver_errors,
                                           Compression compression, const SectionHeads& heads) {
     const int level = level_of(compression);
+    const bool shares = !asset.slots.empty();
     std::vector<StoredSection> sections;
     const auto add = [&](std::uint32_t id, int zstd_level, const auto& arrays) {
         sections.push_back(store_arrays(id, zstd_level, arrays));
@@ -130,10 +147,10 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
     add(kBasiSection, kNotCompressed, Arrays{bytes_of(heads.basis)});
     add(kPrimSection, kNotCompressed,
         Arrays{bytes_of(heads.primitives), std::as_bytes(asset.primitives)});
-    sections.back().entry.version = version_of(asset.primitives);
+    sections.back().entry.version = version_of(asset);
     add(kTranSection, level, row_arrays(heads.transport, asset.transport));
     sections.back().entry.version = kTransportVersion;
-    sections.push_back(store_mesh(asset, heads.mesh));
+    sections.push_back(store_mesh(asset, heads));
     if (!asset.added.empty()) {
         add(kRefiSection, kSmallLevel,
             Arrays{bytes_of(heads.added), std::as_bytes(asset.added.count),
@@ -145,7 +162,9 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
     if (!asset.roughness.empty()) {
         add(kSpecSection, kSmallLevel,
             Arrays{bytes_of(heads.specular), std::as_bytes(asset.roughness),
-                   std::as_bytes(asset.openness)});
+                   std::as_bytes(shares ? std::span<const Openness>(heads.of_slots.openness)
+                                        : asset.openness)});
+        sections.back().entry.version = shares ? kSlotsSpecularVersion : 1;
     }
     if (!asset.gloss.empty()) {
         add(kGlosSection, kSmallLevel, Arrays{bytes_of(heads.gloss), std::as_bytes(asset.gloss)});
@@ -179,6 +198,10 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
     }
     if (!asset.volumes.glow.empty()) {
         add(kGlowSection, level, glow_arrays(heads.glow, asset.volumes.glow));
+    }
+    if (shares) {
+        add(kSharSection, kSmallLevel,
+            Arrays{bytes_of(heads.slots), std::as_bytes(std::span(heads.of_slots.code))});
     }
     if (!receiver_errors.empty()) {
         assert(receiver_errors.size() == asset.receivers());

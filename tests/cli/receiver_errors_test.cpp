@@ -24,10 +24,12 @@ struct ErrorBake {
 
     // The first term's row, all bands.
     std::vector<double> row_of(std::uint32_t vertex) const {
-        const formats::PrimitiveRecord& primitive = formats::primitive_of(loaded.view, vertex);
-        std::vector<float> dense(formats::cubemap_texels(loaded.view.cubemap_size));
-        formats::decode_row(loaded.view.transport, primitive.rows(),
-                            vertex - primitive.first_vertex, 0, dense);
+        const formats::AssetView& view = loaded.view;
+        const auto primitive = static_cast<std::size_t>(&formats::primitive_of(view, vertex) -
+                                                        view.primitives.data());
+        std::vector<float> dense(formats::cubemap_texels(view.cubemap_size));
+        formats::decode_row(view.transport, view.rows_of(primitive),
+                            view.slot_of(primitive, vertex), 0, dense);
         return {dense.begin(), dense.end()};
     }
 

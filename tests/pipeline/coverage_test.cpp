@@ -30,7 +30,8 @@ std::vector<CheckedPair> check_every_receiver(const formats::Scene& scene,
     std::uint64_t traced = 0;
     for (std::uint32_t v = 0; v < receivers.size(); ++v) {
         const formats::PrimitiveRecord& primitive = formats::primitive_of(asset, v);
-        append_pairs(relight_rows({asset.transport, primitive.rows(), v - primitive.first_vertex},
+        append_pairs(relight_rows({asset.transport, primitive.rows(primitive.vertex_count),
+                                   v - primitive.first_vertex},
                                   kDiffuse, lights),
                      eval_reflection(truth, *rays, receivers[v], traced), pairs);
     }

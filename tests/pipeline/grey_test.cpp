@@ -56,12 +56,14 @@ void expect_rows_of_first_band(const formats::Asset& grey, const formats::Asset&
     ASSERT_EQ(one.bands, 1u) << what;
     ASSERT_EQ(three.bands, 3u) << what;
     ASSERT_EQ(one.terms, three.terms) << what;
+    const formats::RowRange grey_rows = grey.view().rows_of(0), rows = colour.view().rows_of(0);
+    ASSERT_EQ(grey_rows.rows, rows.rows) << what;
     const std::size_t texels = formats::cubemap_texels(grey.view().cubemap_size);
     std::vector<float> own(texels), other(texels);
     double sum = 0;
-    for (std::uint32_t row = 0; row < one.rows().rows; ++row) {
-        formats::decode_row(grey.transport.view(), one.rows(), row, 0, own);
-        formats::decode_row(colour.transport.view(), three.rows(), row, 0, other);
+    for (std::uint32_t row = 0; row < rows.rows; ++row) {
+        formats::decode_row(grey.transport.view(), grey_rows, row, 0, own);
+        formats::decode_row(colour.transport.view(), rows, row, 0, other);
         ASSERT_EQ(own, other) << what << ", row " << row;
         sum += static_cast<double>(own[0]);
     }

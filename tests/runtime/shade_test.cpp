@@ -45,7 +45,7 @@ TEST(Shade, RadianceIsBaseColourTimesTheDotProductAndNotBelowZero) {
     std::size_t black = 0;
     for (const PrimitiveRecord& p : view.primitives) {
         std::vector<Rgb> sum(p.vertex_count);
-        dot_rows(view.transport, p.rows(), light, 0, sum, best_dot_path());
+        dot_rows(view.transport, p.rows(p.vertex_count), light, 0, sum, best_dot_path());
         for (std::uint32_t i = 0; i < p.vertex_count; ++i) {
             const Rgb color = vertex_base_color(view, p, p.first_vertex + i);
             const float expected = std::max(0.0f, sum[i].g * color.g);

@@ -34,8 +34,8 @@ Rgb product(const Asset& asset, const LightVector& light, std::uint32_t vertex,
             std::uint32_t term) {
     const PrimitiveRecord& p = asset.primitives[1];
     std::vector<Rgb> out(1);
-    dot_rows(asset.transport.view(), p.rows(), light, (vertex - p.first_vertex) * p.terms + term,
-             out, best_dot_path());
+    dot_rows(asset.transport.view(), asset.view().rows_of(1), light,
+             (vertex - p.first_vertex) * p.terms + term, out, best_dot_path());
     return out[0];
 }
 

@@ -17,7 +17,7 @@ std::vector<float> decode_bands(const formats::SparseRowsView& rows,
     const std::size_t size = formats::cubemap_texels(rows.cubemap_size);
     std::vector<float> bands(primitive.bands * size);
     for (std::uint32_t band = 0; band < primitive.bands; ++band) {
-        formats::decode_row(rows, primitive.rows(), row, band,
+        formats::decode_row(rows, primitive.rows(primitive.vertex_count), row, band,
                             std::span(bands).subspan(band * size, size));
     }
     return bands;
@@ -34,7 +34,7 @@ TEST(ShortenRows, KeepTheCodesOfTheCoefficientsThatABakeWouldKeep) {
         const std::size_t size = formats::cubemap_texels(full.cubemap_size);
         for (std::size_t p = 0; p < full.primitives.size(); ++p) {
             const std::uint32_t bands = full.primitives[p].bands;
-            for (std::uint32_t row = 0; row < full.primitives[p].rows().rows; ++row) {
+            for (std::uint32_t row = 0; row < full.rows_of(p).rows; ++row) {
                 std::vector<float> expected = decode_bands(full.transport, full.primitives[p], row);
                 const formats::SparseRow best =
                     select_coefficients(make_selector(full.cubemap_size, kKept), expected, bands);

@@ -90,7 +90,7 @@ TEST_F(GoldenFile, TransportHasTheValuesItHadWhenItWasWritten) {
         EXPECT_EQ(version_of(kTranSection), golden.tran);
         ASSERT_EQ(asset.receivers(), golden.receivers);
         for (const RowSum& row : golden.rows) {
-            expect_sums(asset.transport, asset.primitives[row.primitive].rows(), row);
+            expect_sums(asset.transport, asset.rows_of(row.primitive), row);
         }
     }
 }

@@ -50,7 +50,7 @@ TEST(OpalFile, TranslucentPrimitivesComeBackWithEveryTerm) {
             const StoredAsset stored(asset);
             expect_same_bytes(stored.view().primitives, asset.primitives);
             tests::expect_same_rows(stored.view().transport, asset.transport.view());
-            EXPECT_EQ(stored.view().primitives.back().rows().rows, 3 * terms);
+            EXPECT_EQ(stored.view().rows_of(stored.view().primitives.size() - 1).rows, 3 * terms);
             EXPECT_EQ(stored.version_of(kPrimSection), 1u) << "earlier readers read it";
         }
     }

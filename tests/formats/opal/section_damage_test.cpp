@@ -11,6 +11,7 @@
 #include "tests/formats/opal/hole_fixture.h"
 #include "tests/formats/opal/normal_map_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
+#include "tests/formats/opal/slot_fixture.h"
 
 namespace opaline::formats {
 namespace {
@@ -40,6 +41,7 @@ std::vector<Section> all_sections() {
             {"glow", make_glow_asset(), kGlowSection, head + 2 * sizeof(GlowRecord), 200, 500, 0},
             {"holes", make_hole_asset(), kHoleSection, 80, 50, 50, 5},
             {"normal maps", make_normal_map_asset(), kNormSection, 48, 50, 50, 0},
+            {"slots", make_shared_asset(), kSharSection, 16, 80, 0, 0},
             {"volumes", make_volume_asset(), kVoluSection, head + 2 * sizeof(VolumeRecord), 1000,
              1000, 1000}};
 }
@@ -97,8 +99,14 @@ void use_glow(const AssetView& asset, const GlowRecord& record, double& sum) {
 /// Uses everything that a runtime would use; the address sanitizer watches.
 void use(const AssetView& asset) {
     double sum = static_cast<double>(list_emitters(asset.emitters).size());
-    for (const PrimitiveRecord& p : asset.primitives) {
-        use_rows(asset.transport, p.rows(), sum);
+    for (std::size_t number = 0; number < asset.primitives.size(); ++number) {
+        const PrimitiveRecord& p = asset.primitives[number];
+        use_rows(asset.transport, asset.rows_of(number), sum);
+        for (std::uint32_t v = p.first_vertex; v < p.first_vertex + p.vertex_count; ++v) {
+            const std::uint32_t slot = asset.slot_of(number, v);
+            sum += asset.transport.row_offset[p.first_row + slot * p.terms] +
+                   asset.normal[asset.vertex_of(number, slot)].x;
+        }
         for (const std::uint32_t i : asset.index.subspan(p.first_index, p.index_count)) {
             sum += asset.position.subspan(p.first_vertex + i, 1)[0].x;
         }
@@ -253,22 +261,27 @@ TEST(SectionDamage, ConsistentlyForgedSectionsAreRefusedOrStayInBounds) {
 
 // The table of sections and all of a file of primitives.
 TEST(SectionDamage, ConsistentlyForgedFilesAreRefusedOrStayInBounds) {
-    Asset asset = tests::make_small_asset();
-    tests::add_translucent_triangle(asset, 4, 1.3f, false, 1);
-    const std::vector<std::byte> whole = encode(asset);
-    std::size_t refused = 0, accepted = 0;
-    for (std::size_t at = sizeof(FileHeader); at < whole.size(); ++at) {
-        for (const int bit : {0, 3, 7}) {
-            AlignedBytes stored(whole);
-            stored.bytes()[at] ^= static_cast<std::byte>(1 << bit);
-            tests::repair_checksums(stored.bytes(), 0);  // of the table alone
-            const auto loaded = read_opal(stored.bytes(), "a.opal");
-            ++(loaded ? accepted : refused);
-            if (loaded) use(loaded->view);
+    Asset plain = tests::make_small_asset();
+    tests::add_translucent_triangle(plain, 4, 1.3f, false, 1);
+    Asset shared = plain;
+    tests::add_gloss(shared);
+    shared = tests::with_copied_corners(shared);
+    for (const Asset* const asset : {&plain, &shared}) {
+        const std::vector<std::byte> whole = encode(*asset);
+        std::size_t refused = 0, accepted = 0;
+        for (std::size_t at = sizeof(FileHeader); at < whole.size(); ++at) {
+            for (const int bit : {0, 3, 7}) {
+                AlignedBytes stored(whole);
+                stored.bytes()[at] ^= static_cast<std::byte>(1 << bit);
+                tests::repair_checksums(stored.bytes(), 0);  // of the table alone
+                const auto loaded = read_opal(stored.bytes(), "a.opal");
+                ++(loaded ? accepted : refused);
+                if (loaded) use(loaded->view);
+            }
         }
+        EXPECT_GT(refused, 100u);
+        EXPECT_GT(accepted, 100u);
     }
-    EXPECT_GT(refused, 100u);
-    EXPECT_GT(accepted, 100u);
 }
 
 // All counts at once, as no single bit makes them.

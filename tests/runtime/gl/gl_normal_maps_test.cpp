@@ -37,7 +37,7 @@ Asset asset_with_normal_maps(bool is_glossy) {
                                              {side * 0.5f, 0, 0.2f}, {0, 0.3f, 0}, 2, 2),
                             {.bands = 3, .is_double_sided = true, .is_sheet = true});
         // The rows of the back, which are negative, are turned over.
-        const formats::RowRange rows = asset.primitives[p].rows();
+        const formats::RowRange rows = asset.view().rows_of(p);
         for (std::uint32_t row = 1; row < rows.rows; row += 2) {
             for (std::uint32_t band = 0; band < rows.bands; ++band) {
                 const std::size_t at = rows.first_band_row + std::size_t{row} * rows.bands + band;
