@@ -22,11 +22,11 @@ struct BatchRows {
 };
 
 BatchRows rows_of(const formats::AssetView& asset, const PrimitiveRecord& primitive,
-                  std::uint32_t first, std::uint32_t vertices) {
+                  std::uint32_t first, std::uint32_t slots) {
     const std::uint64_t terms = primitive.terms, bands = primitive.bands;
     BatchRows batch{};
     batch.row = primitive.first_row + first * terms;
-    batch.rows = vertices * terms;
+    batch.rows = slots * terms;
     batch.band_row = primitive.first_band_row + first * terms * bands;
     batch.band_rows = batch.rows * bands;
     const auto& row_offset = asset.transport.row_offset;
@@ -36,15 +36,22 @@ BatchRows rows_of(const formats::AssetView& asset, const PrimitiveRecord& primit
     return batch;
 }
 
+// Number of a primitive's first slot in the whole asset.
+std::uint32_t first_slot_of(const formats::AssetView& asset, std::uint32_t primitive) {
+    return asset.slots.empty() ? asset.primitives[primitive].first_vertex
+                               : asset.slots.offset[primitive];
+}
+
 DotBatch make_batch(const formats::AssetView& asset, std::uint32_t number, std::uint32_t first,
-                    std::uint32_t vertices, std::size_t alignment) {
+                    std::uint32_t slots, std::size_t alignment) {
     const SparseRowsView& transport = asset.transport;
     const PrimitiveRecord& primitive = asset.primitives[number];
-    const BatchRows rows = rows_of(asset, primitive, first, vertices);
+    const BatchRows rows = rows_of(asset, primitive, first, slots);
 
     DotBatch batch;
-    batch.first_vertex = primitive.first_vertex + first;
-    batch.vertices = vertices;
+    batch.first_slot = first_slot_of(asset, number) + first;
+    batch.slots = slots;
+    batch.first_row = first * primitive.terms;
     batch.bands = primitive.bands;
     batch.terms = primitive.terms;
     batch.primitive = number;
@@ -62,17 +69,17 @@ DotBatch make_batch(const formats::AssetView& asset, std::uint32_t number, std::
     batch.index = place(rows.details, transport.index_bytes);
     batch.code = place(rows.details * primitive.bands, transport.code_bits / 8);
     batch.transport.size = end;
-    batch.radiance = bind_elements(batch.first_vertex, vertices, kRadianceBytes, alignment);
+    batch.radiance = bind_elements(batch.first_slot, slots, kRadianceBytes, alignment);
     if (needs_view(primitive)) {
         batch.product = bind_elements(rows.row, rows.rows, kRadianceBytes, alignment);
-        batch.point = bind_elements(std::uint64_t{3} * batch.first_vertex,
-                                    std::uint64_t{3} * vertices, sizeof(float), alignment);
+        batch.point = bind_elements(std::uint64_t{3} * batch.first_slot, std::uint64_t{3} * slots,
+                                    sizeof(float), alignment);
     }
     return batch;
 }
 
 bool fits(const DotBatch& batch, const DotLimits& limits) {
-    return std::uint64_t{batch.vertices} * batch.terms <= limits.max_vertices &&
+    return std::uint64_t{batch.slots} * batch.terms <= limits.max_vertices &&
            std::max({batch.transport.size, batch.radiance.size, batch.product.size,
                      batch.point.size}) <= limits.max_block_bytes;
 }
@@ -106,12 +113,13 @@ formats::Result<std::vector<DotBatch>> plan_dot_batches(const formats::AssetView
     std::size_t end = 0;
     for (std::uint32_t p = 0; p < asset.primitives.size(); ++p) {
         const PrimitiveRecord& primitive = asset.primitives[p];
-        for (std::uint32_t first = 0; first < primitive.vertex_count;) {
-            const auto batch_of = [&](std::uint32_t vertices) {
-                return make_batch(asset, p, first, vertices, limits.alignment);
+        const std::uint32_t slots = asset.slot_count(p);
+        for (std::uint32_t first = 0; first < slots;) {
+            const auto batch_of = [&](std::uint32_t count) {
+                return make_batch(asset, p, first, count, limits.alignment);
             };
-            // The most vertices that fit: ranges grow with their number.
-            std::uint32_t fitting = 0, too_many = primitive.vertex_count - first + 1;
+            // The most slots that fit: ranges grow with their number.
+            std::uint32_t fitting = 0, too_many = slots - first + 1;
             while (too_many - fitting > 1) {
                 const std::uint32_t middle = fitting + (too_many - fitting) / 2;
                 (fits(batch_of(middle), limits) ? fitting : too_many) = middle;
@@ -119,7 +127,8 @@ formats::Result<std::vector<DotBatch>> plan_dot_batches(const formats::AssetView
             if (fitting == 0) {
                 return formats::make_error(
                     formats::ErrorKind::resource, {},
-                    "primitive " + std::to_string(p) + ", vertex " + std::to_string(first),
+                    "primitive " + std::to_string(p) + ", vertex " +
+                        std::to_string(asset.vertex_of(p, first) - primitive.first_vertex),
                     "one vertex's rows of transport exceed the " +
                         std::to_string(limits.max_block_bytes) +
                         " bytes that a shader may see at once",
@@ -143,7 +152,7 @@ std::array<PackedArray, 6> packed_arrays(const formats::AssetView& asset, const 
     const SparseRowsView& transport = asset.transport;
     const PrimitiveRecord& primitive = asset.primitives[batch.primitive];
     const BatchRows rows =
-        rows_of(asset, primitive, batch.first_vertex - primitive.first_vertex, batch.vertices);
+        rows_of(asset, primitive, batch.first_row / primitive.terms, batch.slots);
     const std::uint64_t codes = rows.details * primitive.bands;
     const std::size_t at = batch.transport.offset;
     return {{{at, bytes_of(transport.row_offset, rows.row, rows.rows + 1)},

@@ -18,10 +18,12 @@ struct BoundRange {
     std::uint32_t origin = 0;          ///< [elements]
 };
 
-/// Consecutive vertices of one primitive whose rows a single dispatch can see. All that belongs to
-/// the rows lies in one range of one buffer: OpenGL ES promises a shader four buffers only.
+/// Consecutive slots of one primitive whose rows a single dispatch can see; where no vertices share
+/// rows, each vertex is a slot. All that belongs to the rows lies in one range of one buffer:
+/// OpenGL ES promises a shader four buffers only.
 struct DotBatch {
-    std::uint32_t first_vertex = 0, vertices = 0;  ///< in the whole asset's numbering
+    std::uint32_t first_slot = 0, slots = 0;  ///< in the whole asset's numbering
+    std::uint32_t first_row = 0;              ///< counted from the primitive's first one
     std::uint32_t bands = 1, terms = 1;
     std::uint32_t primitive = 0;
     std::uint32_t first_detail = 0;  ///< row_offset of the first row
@@ -30,7 +32,7 @@ struct DotBatch {
     std::uint32_t index = 0, code = 0, average_scale = 0, detail_scale = 0, average_code = 0;
     BoundRange radiance;
     BoundRange product;  ///< where needs_view: <T_k, L> of every row
-    BoundRange point;    ///< where needs_view: positions and normals, counted in floats
+    BoundRange point;    ///< where needs_view: positions and normals of slots, counted in floats
 };
 
 /// Whether a primitive's vertices have several rows, to be added up toward an eye. A single one is
@@ -51,7 +53,7 @@ BoundRange bind_elements(std::uint64_t first, std::uint64_t count, std::size_t s
                          std::size_t alignment);
 
 /// Splits all primitives' rows so that every range of every batch keeps the limits; covers every
-/// vertex that belongs to a primitive exactly once per primitive. Errors: resource, where a single
+/// slot of a primitive exactly once per primitive. Errors: resource, where a single
 /// row exceeds the limit.
 formats::Result<std::vector<DotBatch>> plan_dot_batches(const formats::AssetView& asset,
                                                         const DotLimits& limits);

@@ -63,6 +63,17 @@ float unit_of(float farthest) {
     return 1 / std::clamp(farthest, 1e-30f, 1e30f);
 }
 
+GLuint make_buffer_of_slots(std::span<const formats::Vec3> of_vertices,
+                            const formats::SlotsView& slots, GlNames& names) {
+    if (slots.empty()) return names.make_buffer_of(of_vertices);
+    std::vector<formats::Vec3> picked;
+    picked.reserve(slots.vertex.size());
+    for (const std::uint32_t vertex : slots.vertex) {
+        picked.push_back(of_vertices[vertex]);
+    }
+    return names.make_buffer_of(std::span<const formats::Vec3>(picked));
+}
+
 }  // namespace
 
 opaline_status Relight::upload(const formats::AssetView& asset, const RelightOptions& options,
@@ -75,6 +86,7 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
         return api::fail(OPALINE_GL_REFUSED, (main.where + ": " + main.fault).c_str());
     }
     batches_ = std::move(batches).value();
+    spread_batches_ = plan_spread_batches(asset, limits);
     alignment_ = limits.alignment;
     cubemap_size_ = asset.cubemap_size;
     vertices_ = asset.receivers();
@@ -94,10 +106,16 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
     const std::size_t radiance_bytes = vertices_ * kRadianceBytes;
     radiance_ = names.make_buffer(radiance_bytes, GL_DYNAMIC_COPY);
     clear_buffer(gl_, radiance_, radiance_bytes);
+    slot_radiance_ = radiance_;
+    const formats::SlotsView& slots = asset.slots;
+    if (!slots.empty()) {
+        slot_ = names.make_buffer_of(slots.slot);
+        slot_radiance_ = names.make_buffer(slots.vertex.size() * kRadianceBytes, GL_DYNAMIC_COPY);
+    }
     if (std::ranges::any_of(primitives_, needs_view)) {
         product_ = names.make_buffer(asset.transport.rows() * kRadianceBytes, GL_DYNAMIC_COPY);
-        position_ = names.make_buffer_of(asset.position);
-        normal_ = names.make_buffer_of(asset.normal);
+        position_ = make_buffer_of_slots(asset.position, slots, names);
+        normal_ = make_buffer_of_slots(asset.normal, slots, names);
     }
     if (!emitters_.block.empty()) values_ = names.make_buffer_of(asset.emitters.value);
     return make_programs(names);
@@ -142,6 +160,11 @@ opaline_status Relight::make_programs(GlNames& names) {
             names.make_program("emitters", "", {{GL_COMPUTE_SHADER, emitters_comp_text}});
         if (emitter_program_ == 0) return OPALINE_GL_REFUSED;
     }
+    if (!spread_batches_.empty()) {
+        spread_program_ =
+            names.make_program("shared rows", "", {{GL_COMPUTE_SHADER, spread_comp_text}});
+        if (spread_program_ == 0) return OPALINE_GL_REFUSED;
+    }
     return OPALINE_OK;
 }
 
@@ -174,7 +197,7 @@ bool Relight::is_lit_by(const EmitterLight& light, std::uint32_t primitive) cons
 void Relight::dispatch_dot(const DotBatch& batch, GLuint light, bool keeps_sign) const {
     const GLuint program = dot_program_[(batch.bands == 3 ? 1u : 0u) + (keeps_sign ? 2u : 0u)];
     const bool is_added = needs_view(primitives_[batch.primitive]);
-    const std::uint32_t results = batch.vertices * batch.terms;
+    const std::uint32_t results = batch.slots * batch.terms;
     const BoundRange& result = is_added ? batch.product : batch.radiance;
     gl_.UseProgram(program);
     set(program,
@@ -182,7 +205,7 @@ void Relight::dispatch_dot(const DotBatch& batch, GLuint light, bool keeps_sign)
          batch.average_scale, batch.detail_scale, batch.average_code, result.origin});
     bind(0, transport_, batch.transport);
     gl_.BindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, light);
-    bind(2, is_added ? product_ : radiance_, result);
+    bind(2, is_added ? product_ : slot_radiance_, result);
     const std::uint32_t rows = kGroupSize / lanes_;
     gl_.DispatchCompute(1, (results + rows - 1) / rows, 1);
 }
@@ -198,23 +221,22 @@ void Relight::dispatch_emitters(const DotBatch& batch, const EmitterLight& light
         if (color_of(blocks[b]) != Rgb{}) last = b;
     }
     const bool is_added = needs_view(primitive);
-    const std::uint32_t results = batch.vertices * batch.terms;
+    const std::uint32_t results = batch.slots * batch.terms;
     const BoundRange& result = is_added ? batch.product : batch.radiance;
-    const std::uint64_t first_row =
-        std::uint64_t{batch.first_vertex - primitive.first_vertex} * batch.terms;
     for (std::size_t b = 0; b <= last; ++b) {
         const Rgb color = color_of(blocks[b]);
         if (color == Rgb{}) continue;
         gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT);
-        const BoundRange value = bind_elements(blocks[b].first_value + 3 * first_row,
-                                               std::uint64_t{3} * results, 2, alignment_);
+        const BoundRange value =
+            bind_elements(blocks[b].first_value + std::uint64_t{3} * batch.first_row,
+                          std::uint64_t{3} * results, 2, alignment_);
         gl_.UseProgram(emitter_program_);
         const bool is_last = b == last && !keeps_sign(primitive);
         set(emitter_program_, {results, value.origin, result.origin});
         gl_.ProgramUniform3f(emitter_program_, 3, color.r, color.g, color.b);
         gl_.ProgramUniform1ui(emitter_program_, 4, is_last ? 1 : 0);
         bind(0, values_, value);
-        bind(1, is_added ? product_ : radiance_, result);
+        bind(1, is_added ? product_ : slot_radiance_, result);
         gl_.DispatchCompute((results + kGroupSize - 1) / kGroupSize, 1, 1);
     }
 }
@@ -233,6 +255,28 @@ void Relight::light(const PartLights& lights, GlNames& names) {
     }
 }
 
+// Makes what slots show seen by whatever comes after, and by the vertices that have them: of
+// primitives whose rows are added up toward an eye, or of the others.
+void Relight::publish(bool are_viewed) const {
+    const auto wait = [&] {
+        gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
+                          GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    };
+    wait();
+    if (spread_batches_.empty()) return;
+    gl_.UseProgram(spread_program_);
+    for (const SpreadBatch& batch : spread_batches_) {
+        if (needs_view(primitives_[batch.primitive]) != are_viewed) continue;
+        set(spread_program_, {batch.vertices, batch.slot.origin,
+                              batch.shown.origin - batch.least_slot, batch.radiance.origin});
+        bind(0, slot_, batch.slot);
+        bind(1, slot_radiance_, batch.shown);
+        bind(2, radiance_, batch.radiance);
+        gl_.DispatchCompute((batch.vertices + kGroupSize - 1) / kGroupSize, 1, 1);
+    }
+    wait();
+}
+
 void Relight::dot(const EmitterLight& emitters) {
     for (const DotBatch& batch : batches_) {
         const bool is_lit = is_lit_by(emitters, batch.primitive);
@@ -241,8 +285,7 @@ void Relight::dot(const EmitterLight& emitters) {
         dispatch_dot(batch, light_[light], is_lit || keeps_sign(primitives_[batch.primitive]));
         if (is_lit) dispatch_emitters(batch, emitters);
     }
-    gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
-                      GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    publish(false);
 }
 
 void Relight::dispatch_view(const DotBatch& batch, const std::optional<formats::Vec3>& eye,
@@ -253,10 +296,10 @@ void Relight::dispatch_view(const DotBatch& batch, const std::optional<formats::
     // Rows of single scattering alone need no multiple scattering beside them.
     const bool single = has_any(terms, TermSet::single);
     const bool multiple = primitive.is_single_only() ? single : has_any(terms, TermSet::multiple);
-    set(sum.program, {batch.vertices, batch.product.origin, batch.radiance.origin});
+    set(sum.program, {batch.slots, batch.product.origin, batch.radiance.origin});
     gl_.ProgramUniform2ui(sum.program, 3, multiple ? 1 : 0, single ? 1 : 0);
     bind(0, product_, batch.product);
-    bind(3, radiance_, batch.radiance);
+    bind(3, slot_radiance_, batch.radiance);
     const bool is_directed = !sum.is_sheet && sum.terms - (sum.is_separate ? 1 : 0) > 1;
     if (is_directed || sum.is_sheet) {
         const formats::Vec3 at = eye.value_or(formats::Vec3{});
@@ -273,15 +316,14 @@ void Relight::dispatch_view(const DotBatch& batch, const std::optional<formats::
         gl_.ProgramUniform1f(sum.program, 6, primitive.eta);
         gl_.ProgramUniform1ui(sum.program, 7, primitive.flags & PrimitiveRecord::kDoubleSided);
     }
-    gl_.DispatchCompute((batch.vertices + kGroupSize - 1) / kGroupSize, 1, 1);
+    gl_.DispatchCompute((batch.slots + kGroupSize - 1) / kGroupSize, 1, 1);
 }
 
 void Relight::view(const std::optional<formats::Vec3>& eye, TermSet terms) {
     for (const DotBatch& batch : batches_) {
         if (needs_view(primitives_[batch.primitive])) dispatch_view(batch, eye, terms);
     }
-    gl_.MemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_VERTEX_ATTRIB_ARRAY_BARRIER_BIT |
-                      GL_BUFFER_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+    publish(true);
 }
 
 }  // namespace opaline::runtime

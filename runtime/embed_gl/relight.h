@@ -10,6 +10,7 @@
 #include "formats/opal/terms.h"
 #include "runtime/embed_gl/dot_batches.h"
 #include "runtime/embed_gl/gl_names.h"
+#include "runtime/embed_gl/spread_batches.h"
 #include "runtime/emitter_light.h"
 #include "runtime/part_lights.h"
 
@@ -72,6 +73,7 @@ class Relight {
     void dispatch_emitters(const DotBatch& batch, const EmitterLight& light) const;
     void dispatch_view(const DotBatch& batch, const std::optional<formats::Vec3>& eye,
                        formats::TermSet terms) const;
+    void publish(bool are_viewed) const;
     bool is_lit_by(const EmitterLight& light, std::uint32_t primitive) const;
 
     const GlFunctions& gl_;
@@ -80,12 +82,15 @@ class Relight {
     float farthest_ = 0;  // largest coordinate of the mesh [m]
     std::vector<formats::PrimitiveRecord> primitives_;
     std::vector<DotBatch> batches_;
-    formats::Emitters emitters_;  // without values, which are in a buffer
+    std::vector<SpreadBatch> spread_batches_;  // empty where no vertices share rows
+    formats::Emitters emitters_;               // without values, which are in a buffer
+    // What slots show: radiance_ itself where no vertices share rows.
+    GLuint slot_radiance_ = 0, slot_ = 0;
     GLuint transport_ = 0, radiance_ = 0, product_ = 0, position_ = 0, normal_ = 0, values_ = 0;
     std::vector<GLuint> light_;                      // each holds one light vector
     std::vector<std::uint32_t> light_of_primitive_;  // as PartLights::of_primitive
     std::array<GLuint, 4> dot_program_{};
-    GLuint emitter_program_ = 0;
+    GLuint emitter_program_ = 0, spread_program_ = 0;
     std::vector<Sum> sums_;
 };
 

@@ -108,6 +108,8 @@ std::string make_asset_script(const AssetView& asset) {
     DataScript script("asset");
     put_camera(script, asset);
     script.put_records("primitives", asset.primitives);
+    script.put("slot offset", asset.slots.offset);
+    script.put("slots", asset.slots.slot);
     script.put("position", floats_of(asset.position));
     script.put("normal", floats_of(asset.normal));
     script.put("base color", floats_of(asset.base_color));

@@ -86,6 +86,11 @@ const Asset = (() => {
 
   function read(arrays) {
     const primitives = readPrimitives(arrays.get("primitives"));
+    const offset = arrays.get("slot offset"), shares = offset.length > 0;
+    primitives.forEach((primitive, p) => {
+      primitive.firstSlot = shares ? offset[p] : primitive.firstVertex;
+      primitive.slots = shares ? offset[p + 1] - offset[p] : primitive.vertices;
+    });
     arrays.get("roughness").forEach((roughness, p) => { primitives[p].roughness = roughness; });
     readGloss(arrays.get("gloss")).forEach((gloss, p) => { primitives[p].gloss = gloss; });
     records(arrays.get("holes"), 8, (w, f) => {
@@ -110,7 +115,7 @@ const Asset = (() => {
       primitives, camera: arrays.get("camera"),
       position: arrays.get("position"), normal: arrays.get("normal"),
       baseColor: arrays.get("base color"), texcoord: arrays.get("texcoord"),
-      openness: arrays.get("openness"), alpha: arrays.get("alpha"),
+      slots: arrays.get("slots"), openness: arrays.get("openness"), alpha: arrays.get("alpha"),
       tangents: arrays.get("tangents"), albedo: arrays.get("albedo"),
       triangles: absoluteTriangles(arrays.get("triangles"), primitives),
       images: Array.from({ length: sizes.length / 2 }, (_, i) => ({

@@ -65,7 +65,7 @@ const Draw = (() => {
       bindImage("normal_image", normalMap?.image);
       bind(gl, "mirrored_light", lit.mirrored()?.blurred.get(level) ?? null, gl.TEXTURE_2D_ARRAY);
       return {
-        first_row: (primitive.firstRow - primitive.firstVertex * primitive.terms) >>> 0,
+        first_row: (primitive.firstRow - primitive.firstSlot * primitive.terms) >>> 0,
         shown: 1, wrap: primitive.wrap, eta: primitive.eta,
         is_double_sided: primitive.isDoubleSided ? 1 : 0, has_specular: 1, lobe: Objects.lobeOf(level),
         f0_f90: gloss?.f0f90 ?? [0, 0, 0, 0],

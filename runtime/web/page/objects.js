@@ -33,6 +33,12 @@ const Objects = (() => {
     attribute(6, asset.openness, 1, gl.UNSIGNED_BYTE, 4, 2);
     attribute(7, asset.alpha, 1);
     attribute(8, asset.tangents, 3, gl.SHORT, 8, 0);
+    if (asset.slots.length > 0) {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, asset.slots, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(1);
+      gl.vertexAttribIPointer(1, 1, gl.UNSIGNED_INT, 0, 0);
+    }
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, asset.triangles, gl.STATIC_DRAW);
     gl.bindVertexArray(null);
@@ -90,6 +96,7 @@ const Objects = (() => {
     const programs = new Map();
     const surfaces = asset.primitives.map(primitive => {
       const [defines, files] = kindOf(primitive, asset.alpha.length > 0);
+      if (asset.slots.length > 0) defines.push(["SHARED_ROWS", ""]);
       const key = JSON.stringify(defines);
       if (!programs.has(key)) {
         programs.set(key, makeProgram(

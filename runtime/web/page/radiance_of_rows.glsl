@@ -1,8 +1,11 @@
 // What a vertex sends to the eye, from the products <T_k, L> in a texture of 2048 columns: the steps
 // of view.comp.glsl. Specialised by TERMS, the rows of a vertex; OPAQUE or SHEET or, of translucent
-// ones, HARMONICS and SEPARATE. view_terms.glsl comes before this.
+// ones, HARMONICS and SEPARATE. SHARED_ROWS: rows are those of slots. view_terms.glsl comes before this.
 uniform sampler2D products;
-uniform uint first_row;  // of vertex 0, modulo 2^32
+uniform uint first_row;  // of vertex 0, or of slot 0, modulo 2^32
+#ifdef SHARED_ROWS
+layout(location = 1) in uint slot;
+#endif
 #if HARMONICS > 1
 uniform float eta;
 uniform uint is_double_sided;
@@ -13,7 +16,11 @@ vec3 product_at(uint row) {
 }
 
 vec3 radiance_of_rows(vec3 normal, vec3 to_eye) {
+#ifdef SHARED_ROWS
+    uint at = first_row + slot * uint(TERMS);
+#else
     uint at = first_row + uint(gl_VertexID) * uint(TERMS);
+#endif
 #if defined(SHEET)
     return max(product_at(at + (dot(normal, to_eye) < 0.0 ? 1u : 0u)), 0.0);
 #elif defined(OPAQUE)

@@ -5,7 +5,7 @@ const Rows = (() => {
   function addGrey(rows, primitive, light, out) {
     const { offset, index, code, squares, averageCode, averageScale, detailScale } = rows;
     const face = 3 * rows.cubemap * rows.cubemap, first = offset[primitive.firstRow];
-    const count = primitive.vertices * primitive.terms, shift = primitive.firstCode - first;
+    const count = primitive.slots * primitive.terms, shift = primitive.firstCode - first;
     for (let r = 0; r < count; ++r) {
       const row = primitive.firstRow + r, band = primitive.firstBandRow + r;
       let red = 0, green = 0, blue = 0;
@@ -33,7 +33,7 @@ const Rows = (() => {
   function addColored(rows, primitive, light, out) {
     const { offset, index, code, squares, averageCode, averageScale, detailScale } = rows;
     const face = 3 * rows.cubemap * rows.cubemap, first = offset[primitive.firstRow];
-    const count = primitive.vertices * primitive.terms;
+    const count = primitive.slots * primitive.terms;
     for (let r = 0; r < count; ++r) {
       const row = primitive.firstRow + r, band = primitive.firstBandRow + 3 * r;
       let red = 0, green = 0, blue = 0;
@@ -80,7 +80,7 @@ const Rows = (() => {
       const color = colors[block.emitter].map(c => c * block.scale);
       if (color.every(c => c === 0)) continue;
       let from = block.firstValue, to = 4 * primitive.firstRow;
-      for (let r = primitive.vertices * primitive.terms; r > 0; --r, from += 3, to += 4) {
+      for (let r = primitive.slots * primitive.terms; r > 0; --r, from += 3, to += 4) {
         for (let k = 0; k < 3; ++k) out[to + k] += color[k] * Light.kFloats[halves[from + k]];
       }
     }

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/embed_gl/spread_batches.h"
+#include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 
 namespace opaline::runtime {
@@ -23,10 +25,10 @@ TEST(DotBatches, CoverEveryVertexOnceWithinTheLimits) {
             ASSERT_TRUE(batches.has_value());
             std::uint32_t next = 0;
             for (const DotBatch& batch : *batches) {
-                EXPECT_EQ(batch.first_vertex, next);
-                EXPECT_GT(batch.vertices, 0u);
-                EXPECT_LE(batch.vertices, limits.max_vertices);
-                next += batch.vertices;
+                EXPECT_EQ(batch.first_slot, next);
+                EXPECT_GT(batch.slots, 0u);
+                EXPECT_LE(batch.slots, limits.max_vertices);
+                next += batch.slots;
                 for (const BoundRange& range : {batch.transport, batch.radiance}) {
                     EXPECT_EQ(range.offset % limits.alignment, 0u);
                     EXPECT_EQ(range.size % 4, 0u);
@@ -53,20 +55,47 @@ TEST(DotBatches, OfTranslucentPrimitivesBindEveryRowsResult) {
                 EXPECT_EQ(batch.product.size, 0u);
                 continue;
             }
-            EXPECT_EQ(batch.first_vertex, next);
-            next += batch.vertices;
-            EXPECT_LE(batch.vertices * batch.terms, limits.max_vertices);
-            const std::uint32_t first = batch.first_vertex - p.first_vertex;
+            EXPECT_EQ(batch.first_slot, next);
+            next += batch.slots;
+            EXPECT_LE(batch.slots * batch.terms, limits.max_vertices);
+            const std::uint32_t first = batch.first_slot - p.first_vertex;
             EXPECT_EQ(batch.product.offset + 16 * batch.product.origin,
                       16 * (p.first_row + first * std::size_t{9}));
             EXPECT_EQ(batch.point.offset + 4 * batch.point.origin,
-                      12 * std::size_t{batch.first_vertex});
+                      12 * std::size_t{batch.first_slot});
             for (const BoundRange& range : {batch.product, batch.point}) {
                 EXPECT_EQ(range.offset % limits.alignment, 0u);
                 EXPECT_LE(range.size, limits.max_block_bytes);
             }
-            EXPECT_GE(batch.product.size, 16 * (batch.product.origin + batch.vertices * 9u));
-            EXPECT_GE(batch.point.size, 4 * (batch.point.origin + batch.vertices * 3u));
+            EXPECT_GE(batch.product.size, 16 * (batch.product.origin + batch.slots * 9u));
+            EXPECT_GE(batch.point.size, 4 * (batch.point.origin + batch.slots * 3u));
+        }
+        EXPECT_EQ(next, asset.position.size());
+    }
+}
+
+TEST(SpreadBatches, GiveEveryVertexItsSlotWithinTheLimits) {
+    const formats::Asset asset = tests::with_copied_corners(two_primitives(8));
+    EXPECT_TRUE(plan_spread_batches(two_primitives(8).view(), {1 << 20, 256, 1000}).empty());
+    for (const DotLimits limits : {DotLimits{1 << 20, 256, 100000}, DotLimits{1 << 20, 4, 5},
+                                   DotLimits{600, 32, 1000}, DotLimits{64, 16, 1000}}) {
+        std::uint32_t next = 0;
+        for (const SpreadBatch& batch : plan_spread_batches(asset.view(), limits)) {
+            EXPECT_LE(batch.vertices, limits.max_vertices);
+            for (const BoundRange& range : {batch.slot, batch.shown, batch.radiance}) {
+                EXPECT_EQ(range.offset % limits.alignment, 0u);
+                EXPECT_LE(range.size, limits.max_block_bytes);
+            }
+            EXPECT_EQ(batch.slot.offset + 4 * batch.slot.origin, 4 * next);
+            EXPECT_EQ(batch.radiance.offset + 16 * batch.radiance.origin, 16 * next);
+            EXPECT_EQ(batch.shown.offset + 16 * batch.shown.origin, 16 * batch.least_slot);
+            for (std::uint32_t v = next; v < next + batch.vertices; ++v) {
+                const std::uint32_t slot = asset.slots.slot[v];
+                ASSERT_GE(slot, batch.least_slot);
+                ASSERT_LE(16 * (batch.shown.origin + slot - batch.least_slot + 1),
+                          batch.shown.size);
+            }
+            next += batch.vertices;
         }
         EXPECT_EQ(next, asset.position.size());
     }
@@ -92,8 +121,8 @@ TEST(DotBatches, ArraysOfABatchFillItsRangeWithoutOverlapping) {
             }
             EXPECT_LE(end, batch.transport.offset + batch.transport.size);
             EXPECT_LT(batch.transport.size - bytes, 12u);
-            const std::size_t band_rows = std::size_t{batch.vertices} * batch.terms * batch.bands;
-            details += (bytes - 4 * (batch.vertices * batch.terms + 1) - 20 * band_rows) /
+            const std::size_t band_rows = std::size_t{batch.slots} * batch.terms * batch.bands;
+            details += (bytes - 4 * (batch.slots * batch.terms + 1) - 20 * band_rows) /
                        (2 + batch.bands * code_bits / 8);
         }
         EXPECT_LE(end, transport_bytes(*batches));

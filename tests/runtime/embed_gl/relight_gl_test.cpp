@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/embed_gl/gl_fixture.h"
 #define GL_GLEXT_PROTOTYPES
 #include <GL/glcorearb.h>
@@ -50,6 +51,22 @@ TEST_P(EmbedGlRelight, RadianceIsThatOfTheCpuForEveryKindOfReceiver) {
         expect_relit(eye);
         EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
     }
+}
+
+// Every corner of a triangle has a copy of its vertex.
+TEST_P(EmbedGlRelight, VerticesThatShareRowsShowWhatTheCpuSays) {
+    const formats::Asset asset = tests::with_copied_corners(make_every_kind(8, 8));
+    ASSERT_FALSE(asset.slots.empty());
+    make(asset, OPALINE_GL_WITH_TEXTURE);
+    relight();
+    expect_relit();
+    const float eye[3] = {2, 1, 7}, tinted[3] = {3, 1, 0.25f};
+    look_from({2, 1, 7});
+    expect_relit(eye);
+    opaline_light_set_emitter(host_->light(), 1, tinted);
+    relight();
+    expect_relit(eye);
+    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
 }
 
 TEST_P(EmbedGlRelight, IndicesOfFourBytesAreRead) {

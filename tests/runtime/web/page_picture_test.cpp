@@ -10,6 +10,7 @@
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_bounds.h"
 #include "runtime/web/page_layer.h"
+#include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/picture/every_surface.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/synthetic_volume.h"
@@ -36,8 +37,8 @@ formats::Environment sky_with_sun() {
     return sky;
 }
 
-void expect_every_surface(const PageView& wanted, formats::Vec3 eye) {
-    const formats::Asset asset = test::make_every_surface();
+void expect_every_surface(const PageView& wanted, formats::Vec3 eye,
+                          const formats::Asset& asset = test::make_every_surface()) {
     const formats::AssetView view = asset.view();
     const PageLight lights[] = {{"white", white()}, {"my <sky>", sky_with_sun()}};
     const auto page = page_of(asset, lights, "a \"title\" </script>");
@@ -53,6 +54,11 @@ void expect_every_surface(const PageView& wanted, formats::Vec3 eye) {
                                return render_on_cpu(view, lights[1].environment, moved, wanted);
                            });
     EXPECT_EQ(shown.title, "a \"title\" &lt;/script&gt;");
+}
+
+TEST_F(PagePicture, SurfacesWhoseVerticesShareRowsLookAsOnTheCpu) {
+    expect_every_surface({"light=my+%3Csky%3E&eye=0.5,2,7&target=0,0.7,0&rotate=40", 40},
+                         {0.5f, 2, 7}, tests::with_copied_corners(test::make_every_surface()));
 }
 
 TEST_F(PagePicture, EverySurfaceLooksAsOnTheCpuUnderTurnedLight) {
