@@ -290,14 +290,15 @@ ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset
                        const Context& context, std::uint64_t& traced) {
     const std::uint64_t seed = bake.knobs.seed;
     const std::size_t all = count_receivers(bake.inputs.receivers);
-    const std::vector<std::uint32_t> used = find_used_vertices(bake.inputs.scene);
+    const formats::SlotsView slots = bake.inputs.facts.slots.view();
+    const std::vector<std::uint32_t> used = find_used_vertices(bake.inputs.scene, slots);
     std::vector<std::uint32_t> drawn =
         draw_evenly(used.size(), count_checked(used.size(), bake.knobs.cubemap_size),
                     RandomStage::held_back_receivers, seed);
     for (std::uint32_t& receiver : drawn) {
         receiver = used[receiver];
     }
-    std::vector<CheckPoint> receivers = make_check_points(bake.inputs.receivers, drawn);
+    std::vector<CheckPoint> receivers = make_check_points(bake.inputs.receivers, slots, drawn);
     std::vector<CheckPoint> between =
         draw_surface_probes(bake.inputs.scene, bake.inputs.rays, find_lit_primitives(bake),
                             {drawn.size(), seed, static_cast<std::uint32_t>(all)}, context);

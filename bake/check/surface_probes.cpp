@@ -83,6 +83,7 @@ std::vector<CheckPoint> draw_surface_probes(const formats::Scene& scene, const R
 }
 
 std::vector<CheckPoint> make_check_points(std::span<const ReceiverSet> sets,
+                                          const formats::SlotsView& slots,
                                           std::span<const std::uint32_t> drawn) {
     std::vector<CheckPoint> checked;
     checked.reserve(drawn.size());
@@ -91,7 +92,7 @@ std::vector<CheckPoint> make_check_points(std::span<const ReceiverSet> sets,
         CheckPoint point;
         point.primitive = set.primitive;
         point.material = set.material;
-        point.vertex = {v, v, v};
+        point.vertex.fill(slots.empty() ? v : slots.vertex[v]);
         point.receiver = set.outside[v - set.first];
         point.body = set.inside[v - set.first];
         point.key = v;

@@ -9,6 +9,7 @@
 #include "bake/base/context.h"
 #include "bake/receivers/receiver.h"
 #include "bake/trace/ray_scene.h"
+#include "formats/opal/slots.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -31,8 +32,9 @@ struct CheckPoint {
     glm::vec3 view() const { return to_eye == glm::vec3(0) ? body.normal : to_eye; }
 };
 
-/// The receivers `drawn` as points: running numbers of the sets.
+/// The receivers `drawn` as points: running numbers of the sets, which are slots if there are any.
 std::vector<CheckPoint> make_check_points(std::span<const ReceiverSet> sets,
+                                          const formats::SlotsView& slots,
                                           std::span<const std::uint32_t> drawn);
 
 /// Sets `behind` of about half of the points of thin-walled surfaces, by their keys.

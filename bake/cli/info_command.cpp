@@ -101,6 +101,7 @@ Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) 
     info["bytes"] = asset.file.bytes().size();
     info["cubemap"] = view.cubemap_size;
     info["receivers"] = view.receivers();
+    info["slots"] = view.slots.empty() ? view.receivers() : view.slots.vertex.size();
     info["rows"] = view.transport.rows();
     info["coefficients"] = view.transport.row_offset.back();
     info["code_bits"] = view.transport.code_bits;
@@ -300,6 +301,10 @@ int run(const InfoCommand& options) {
                    ? 0.0
                    : static_cast<double>(view.transport.row_offset.back()) / view.transport.rows(),
                view.transport.code_bits);
+    if (!view.slots.empty()) {
+        fmt::print("              {} vertices share the rows of {}\n", view.receivers(),
+                   view.slots.vertex.size());
+    }
     print_receiver_errors(info["receiver_errors"]);
     print_provenance(info["provenance"]);
     print_volumes(view.volumes);

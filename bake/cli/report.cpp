@@ -79,6 +79,11 @@ Json accuracy_json(const bake::AccuracyReport& accuracy) {
             {"trials", std::move(trials)}};
 }
 
+// Receivers that have rows: fewer where vertices share them.
+std::size_t slots_of(const formats::Asset& asset) {
+    return asset.slots.empty() ? asset.position.size() : asset.slots.vertex.size();
+}
+
 // Of any primitive: they may differ.
 std::uint32_t most_terms(const formats::Asset& asset) {
     std::uint32_t most = 0;
@@ -141,6 +146,8 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     }
     report["output"] = {{"bytes", bytes},
                         {"receivers", result.asset.position.size()},
+                        {"slots", slots_of(result.asset)},
+                        {"rows", result.asset.transport.view().rows()},
                         {"terms", most_terms(result.asset)},
                         {"coefficients_per_term", report["knobs"]["coefficients"]}};
     report["warnings"] = Json::array();
@@ -166,7 +173,8 @@ std::string make_plan_json(const bake::Knobs& knobs, const bake::RefineReport& r
                           {"predicted_bytes_total", cost.bytes},
                           {"predicted_bytes_shared", cost.shared_bytes},
                           {"predicted_memory_bytes", cost.memory_bytes},
-                          {"receivers", cost.receivers}});
+                          {"receivers", cost.vertices},
+                          {"slots", cost.receivers}});
 }
 
 std::string make_plan_table(const bake::Knobs& knobs, const bake::RefineReport& refined,
@@ -225,10 +233,14 @@ std::string make_plan_table(const bake::Knobs& knobs, const bake::RefineReport& 
         }
         table += "\n";
     }
-    return table + fmt::format("predicted: {} on {}, {}, {} receivers, {} of memory\n",
+    const std::string shared =
+        cost.receivers < cost.vertices
+            ? fmt::format(" that share the rows of {} (--simplify)", cost.receivers)
+            : "";
+    return table + fmt::format("predicted: {} on {}, {}, {} receivers{}, {} of memory\n",
                                format_seconds(cost.seconds),
                                threads == 1 ? "1 thread" : fmt::format("{} threads", threads),
-                               bytes(cost.bytes), cost.receivers, bytes(cost.memory_bytes));
+                               bytes(cost.bytes), cost.vertices, shared, bytes(cost.memory_bytes));
 }
 
 std::string make_depfile(const std::filesystem::path& output,

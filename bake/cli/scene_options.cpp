@@ -14,6 +14,7 @@
 #include "bake/effects/effects.h"
 #include "bake/effects/volumes/plan_volumes.h"
 #include "bake/pipeline/predict_memory.h"
+#include "bake/scene/shared_rows.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {
@@ -194,6 +195,9 @@ void add_scene_options(const Command& command, SceneOptions& options) {
             }
         }
     }
+    command.add("--simplify", one_of(options.bake.simplify, {{"auto", true}, {"off", false}}),
+                "vertices of one place and one normal of a mesh, as unwelded, flat-shaded and "
+                "seamed exports have them, share their rows: auto; or each has its own: off");
     command.add_flag("--separate-terms", options.bake.separate_terms,
                      "keep " + formats::term_names(formats::TermSet::separable, " and ") +
                          " scattering apart, so that `render --terms` can show each");
@@ -229,7 +233,9 @@ formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs
     wanted.check_size = check_size;
     auto imported = open_scene(options.scene, wanted, options.media, detail);
     require(bake::check_bakeable(imported.scene));
-    require(check(bake::count_memory(bake::all_effects(), imported.scene, knobs)));
+    const formats::Slots slots =
+        knobs.simplify ? bake::find_slots(imported.scene) : formats::Slots{};
+    require(check(bake::count_memory(bake::all_effects(), imported.scene, slots.view(), knobs)));
     require(check_threads(threads));
     return imported;
 }

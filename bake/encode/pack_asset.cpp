@@ -5,6 +5,7 @@
 
 #include "bake/scene/lobe_record.h"
 #include "bake/scene/marble.h"
+#include "bake/scene/shared_rows.h"
 
 namespace opaline::bake {
 namespace {
@@ -46,12 +47,13 @@ PreviewImageData to_preview(const Image8& image) {
 }  // namespace
 
 Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseRows transport,
-                 std::vector<Openness> openness) {
+                 std::vector<Openness> openness, Slots slots) {
     Asset asset;
     const bool textured = !scene.images.empty();
     std::uint32_t rows = 0, band_rows = 0;
     std::uint64_t codes = 0;
-    for (const Primitive& p : scene.primitives) {
+    for (std::size_t number = 0; number < scene.primitives.size(); ++number) {
+        const Primitive& p = scene.primitives[number];
         const Material& material = scene.materials[p.material];
         const RowLayout& layout = layouts[p.material];
         PrimitiveRecord record;
@@ -64,7 +66,8 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         record.first_index = static_cast<std::uint32_t>(asset.index.size());
         record.index_count = static_cast<std::uint32_t>(p.index.size());
         // Rows, band rows and codes are numbered consecutively over the primitives.
-        const std::uint32_t count = record.vertex_count * layout.terms();
+        const std::uint32_t count =
+            count_receivers_of(scene, slots.view(), number) * layout.terms();
         record.first_row = rows;
         record.terms = layout.terms();
         record.bands = layout.bands();
@@ -119,7 +122,8 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
                      [](const GlossRecord& g) { return g.is_glossy(); })) {
         asset.gloss.clear();
     }
-    asset.openness = std::move(openness);
+    asset.openness = spread_to_vertices(slots.view(), std::move(openness));
+    asset.slots = std::move(slots);
     asset.transport = std::move(transport);
     return asset;
 }

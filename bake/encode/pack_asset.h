@@ -13,11 +13,12 @@
 namespace opaline::bake {
 
 /// Puts a scene's preview geometry and its finished transport rows into one asset, primitives in
-/// scene order. `layouts`: one per material. `transport` has the rows of all vertices; the layout
-/// of a vertex's material gives the number of rows and bands. `openness`: one per vertex, or empty
-/// where no material mirrors.
+/// scene order. `layouts`: one per material. `transport` has the rows of all receivers, which are
+/// vertices or, if there are some, slots; the layout of their material gives the number of rows and
+/// bands. `openness`: one per receiver, or empty where no material mirrors.
 formats::Asset pack_asset(const formats::Scene& scene, std::span<const RowLayout> layouts,
-                          formats::SparseRows transport, std::vector<formats::Openness> openness);
+                          formats::SparseRows transport, std::vector<formats::Openness> openness,
+                          formats::Slots slots = {});
 
 /// The holes of a scene's surfaces, as pictures need them (has_holes). Adds the alpha of their
 /// images, one each, to `images`. Primitives in scene order.

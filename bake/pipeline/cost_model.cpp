@@ -16,6 +16,7 @@
 #include "bake/pipeline/filtered_textures.h"
 #include "bake/pipeline/predict_memory.h"
 #include "bake/pipeline/volume_costs.h"
+#include "bake/scene/shared_rows.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/openness.h"
 #include "formats/opal/receiver_errors.h"
@@ -51,11 +52,20 @@ constexpr double kPlanTriangle = 6.3e-7, kOrientTriangle = 7.6e-7;
 constexpr CostBySize kBuildTriangle{3.2e-7, 3.6e-7}, kPlaceReceiver{5.2e-6, 6.5e-6};
 constexpr double kTestLights = 5e-3;
 
+double count_vertices(const formats::Scene& scene) {
+    double count = 0;
+    for (const formats::Primitive& p : scene.primitives) {
+        count += static_cast<double>(p.position.size());
+    }
+    return count;
+}
+
 // Mesh and images, compressed to about half.
 double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
     constexpr double kCompressed = 0.5;
     const double vertex = scene.images.empty() ? 36 : 44;
-    double bytes = facts.receivers * vertex + facts.triangles * 12;
+    double bytes = count_vertices(scene) * vertex + facts.triangles * 12 +
+                   static_cast<double>(facts.slots.slot.size() + facts.slots.vertex.size()) * 4;
     for (const formats::Image8& image : scene.images) {
         bytes += static_cast<double>(image.rgba.size()) * 3 / 4;
     }
@@ -153,7 +163,8 @@ bool bill_shared_light(const CostedBake& bake, Bill& bill) {
 // What the plan makes of the scene.
 MemoryCounts count_planned_memory(const CostedBake& bake) {
     const CostRequest& request = bake.request;
-    MemoryCounts counts = count_memory(request.effects, request.scene, request.knobs);
+    MemoryCounts counts =
+        count_memory(request.effects, request.scene, request.facts.slots.view(), request.knobs);
     const auto& effects = request.effects.effects;
     for (std::size_t e = 0; e < effects.size(); ++e) {
         if (effects[e].light_work != nullptr &&
@@ -172,14 +183,17 @@ MemoryCounts count_planned_memory(const CostedBake& bake) {
 }
 
 void bill_row_stages(const CostedBake& bake, const CostedVolumes& volumes, Bill& bill) {
-    for (const formats::Primitive& p : bake.request.scene.primitives) {
+    const formats::Scene& scene = bake.request.scene;
+    for (std::size_t number = 0; number < scene.primitives.size(); ++number) {
+        const formats::Primitive& p = scene.primitives[number];
         const auto subject = std::ranges::find(bake.subjects, p.material, &CostedSubject::material);
         const auto own = std::span(bake.subjects)
                              .subspan(static_cast<std::size_t>(subject - bake.subjects.begin()),
                                       subject == bake.subjects.end() ? 0 : 1);
         bill.open("rows of '" + p.name + "'", bake.kind_of("rows", own, fills_rows));
         if (!own.empty()) {
-            const auto receivers = static_cast<double>(p.position.size());
+            const double receivers =
+                count_receivers_of(scene, bake.request.facts.slots.view(), number);
             bill_rows(bake, *subject, receivers, bill);
             bill_encoding(bake, *subject, receivers, bill);
             bill_completion(bake.request, volumes, receivers,
@@ -250,11 +264,12 @@ CostPrediction predict_costs(const CostRequest& request, std::vector<PlanEntry>&
     bill.add_bytes(mesh_bytes(request.scene, request.facts));
     if (request.receiver_errors) {
         bill.add_bytes(sizeof(formats::ReceiverErrorsHead) +
-                       sizeof(float) * request.facts.receivers);
+                       sizeof(float) * count_vertices(request.scene));
     }
     bill.cost.memory_bytes = static_cast<std::uint64_t>(
         predict_memory(request.effects, count_planned_memory(bake), request.knobs, request.threads)
             .bytes());
+    bill.cost.vertices = static_cast<std::uint64_t>(count_vertices(request.scene));
     bill.cost.receivers = static_cast<std::uint64_t>(request.facts.receivers);
     return std::move(bill.cost);
 }

@@ -26,7 +26,8 @@ struct CostPrediction {
     double shared_seconds = 0;       ///< part of `seconds` that belongs to no effect
     std::uint64_t bytes = 0;         ///< of the file
     std::uint64_t shared_bytes = 0;  ///< of its mesh and images: part of `bytes`
-    std::uint64_t receivers = 0;
+    std::uint64_t vertices = 0;
+    std::uint64_t receivers = 0;     ///< fewer where vertices share rows
     std::uint64_t memory_bytes = 0;  ///< peak of the bake (predict_memory.h)
 };
 

@@ -28,6 +28,7 @@
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/orient_bodies.h"
+#include "bake/scene/shared_rows.h"
 #include "bake/trace/hidden_receivers.h"
 #include "bake/trace/stand_ins.h"
 #include "bake/trace/touching_triangles.h"
@@ -170,8 +171,9 @@ formats::Status bake_inspected(const BakeInputs& unlit, std::span<const Lamp> la
     std::vector<formats::Openness> openness = bake_all_openness(bake, subjects, context, log);
     if (context.cancelled()) return interrupted();
     result.asset = pack_asset(bake.scene, layouts_of(bake.scene, subjects), std::move(rows->rows),
-                              std::move(openness));
-    result.receiver_errors = std::move(rows->receiver_error);
+                              std::move(openness), bake.facts.slots);
+    result.receiver_errors =
+        spread_to_vertices(bake.facts.slots.view(), std::move(rows->receiver_error));
     result.error = run_stage(log, "self-check", "self-check", [&](std::uint64_t& traced) {
         return check_file({bake, subjects, knobs, lights, before ? &*before : nullptr},
                           result.asset.view(), context, traced);
@@ -265,7 +267,9 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     }
     const RayScene& rays = hierarchy ? *hierarchy : *sky;
     const std::vector<ReceiverSet> receivers = run_stage(log, "receivers", [&](std::uint64_t&) {
-        return place_receivers(scene, result.facts, rays, context);
+        const formats::SlotsView slots = result.facts.slots.view();
+        return place_receivers(slots.empty() ? scene : merge_vertices(scene, slots), result.facts,
+                               rays, context);
     });
     BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
     std::optional<ScenePyramids> textures;

@@ -14,7 +14,7 @@ ScenePlan plan_scene(const EffectTable& effects, const formats::Scene& scene, co
     VolumePlan volumes = plan_volumes(scene, knobs);
     LayerPlan layers = plan_layers(scene, knobs);
     EmitterPlan emitters = plan_emitters(scene, knobs);
-    ScenePlan plan{inspect_scene(scene),
+    ScenePlan plan{inspect_scene(scene, knobs.simplify),
                    {},
                    std::move(volumes.layouts),
                    std::move(layers.layouts),

@@ -6,6 +6,7 @@
 #include "bake/effects/volumes/volume_parts.h"
 #include "bake/effects/volumes/volume_work.h"
 #include "bake/pipeline/cost_model.h"
+#include "bake/scene/shared_rows.h"
 
 namespace opaline::bake {
 namespace {
@@ -28,12 +29,15 @@ constexpr double kGrowth = 3;
 MemoryCounts count_memory(const formats::SceneCounts& scene) {
     MemoryCounts counts;
     counts.scene = scene;
-    counts.opaque_rows = static_cast<double>(scene.vertices);
+    // Vertices may share rows. In a closed mesh six triangles meet at one, in the mean.
+    counts.receivers =
+        std::min(static_cast<double>(scene.vertices), static_cast<double>(scene.indices) / 6);
+    counts.opaque_rows = counts.receivers;
     return counts;
 }
 
 MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scene,
-                          const Knobs& knobs) {
+                          const formats::SlotsView& slots, const Knobs& knobs) {
     MemoryCounts counts;
     for (const formats::Material& material : scene.materials) {
         counts.media += material.medium ? 1 : 0;
@@ -41,19 +45,21 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
     for (const formats::Image8& image : scene.images) {
         counts.image_bytes += static_cast<double>(image.rgba.size());
     }
-    for (const formats::Primitive& primitive : scene.primitives) {
-        const auto vertices = static_cast<double>(primitive.position.size());
+    for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
+        const formats::Primitive& primitive = scene.primitives[p];
+        const double receivers = count_receivers_of(scene, slots, p);
+        counts.receivers += receivers;
         ++counts.scene.primitives;
         counts.scene.vertices += primitive.position.size();
         counts.scene.indices += primitive.index.size();
         const formats::Material& material = scene.materials[primitive.material];
         const auto& medium = material.medium;
         if (material.sheet) {
-            counts.translucent_rows += 2 * vertices;
+            counts.translucent_rows += 2 * receivers;
             continue;
         }
         if (!medium) {
-            counts.opaque_rows += vertices;
+            counts.opaque_rows += receivers;
             continue;
         }
         double terms = 1;
@@ -62,7 +68,7 @@ MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scen
                 terms = std::max(terms, effect.gather.typical_rows(*medium, knobs));
             }
         }
-        counts.translucent_rows += vertices * (terms + (knobs.separate_terms ? 1 : 0));
+        counts.translucent_rows += receivers * (terms + (knobs.separate_terms ? 1 : 0));
     }
     const auto [parted, layouts] = part_volumes(scene, plan_volumes(scene, knobs).layouts, knobs);
     const std::vector<VolumeWork> works =
@@ -109,7 +115,7 @@ MemoryPrediction predict_memory(const EffectTable& effects, const MemoryCounts& 
              {"the scene", vertices * kVertex + indices * kIndex + counts.image_bytes},
              {"its primitives and instances", primitives * kPrimitive},
              {"the ray hierarchy", triangles * std::max(kPlanTriangleBytes, kHierarchyTriangle)},
-             {"receivers", vertices * kReceiver},
+             {"receivers", counts.receivers * kReceiver},
              {"surface samples", counts.media * samples},
              {"volumes", counts.volume_bytes},
              {"cloud layers", counts.layer_bytes},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bake/plan/effect.h"
+#include "formats/opal/slots.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -13,7 +14,8 @@ namespace opaline::bake {
 struct MemoryCounts {
     formats::SceneCounts scene;
     double image_bytes = 0;       ///< of decoded textures
-    double translucent_rows = 0;  ///< of all vertices of media together
+    double receivers = 0;         ///< vertices, or fewer where they share rows
+    double translucent_rows = 0;  ///< of all receivers of media together
     double opaque_rows = 0;       ///< of all others
     double opaque_bands = 1;      ///< 3: some of these are coloured
     double media = 0;             ///< materials that are translucent
@@ -25,9 +27,9 @@ struct MemoryCounts {
 /// Of a scene of which only the size is known: everything counts as opaque, so that the prediction
 /// is a lower bound.
 MemoryCounts count_memory(const formats::SceneCounts& scene);
-/// Of a loaded scene; parts that depend on the plan are left out.
+/// Of a loaded scene and its slots (shared_rows.h); parts that depend on the plan are left out.
 MemoryCounts count_memory(const EffectTable& effects, const formats::Scene& scene,
-                          const Knobs& knobs);
+                          const formats::SlotsView& slots, const Knobs& knobs);
 
 /// Peak memory of a whole bake by part [bytes].
 struct MemoryPrediction {

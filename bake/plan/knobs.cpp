@@ -169,6 +169,7 @@ formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptio
     knobs.refine = options.refine;
     knobs.seed = options.seed;
     knobs.separate_terms = options.separate_terms;
+    knobs.simplify = options.simplify;
     if (options.error != 0) {
         if (auto status = start_from_target(knobs, effects, options); !status) {
             return std::move(status).error();

@@ -53,6 +53,7 @@ struct BakeOptions {
                                      ///< kAllCoefficients
     KnobValues given;                ///< knobs of effects
     bool separate_terms = false;     ///< rows that all views share apart from the others
+    bool simplify = true;            ///< vertices of one place and one normal share their rows
     /// names of the only effects to simulate; empty: as the planner decides
     std::vector<std::string> effects;
     bool simulate_all = false;  ///< every effect that concerns a subject, however little it
@@ -73,6 +74,7 @@ struct Knobs {
     std::uint32_t code_bits = 8;  ///< of the stored detail coefficients
     bool exact_rays = false;      ///< nothing is shared between receivers or samples: no light maps
     bool separate_terms = false;
+    bool simplify = true;
     std::vector<std::string> effects;
     bool looks_inside_media = true;  ///< some effect that acts inside media is wanted
     bool simulate_all = false;

@@ -5,23 +5,26 @@
 
 namespace opaline::bake {
 
-std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene) {
-    std::vector<std::uint32_t> used;
+std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene,
+                                              const formats::SlotsView& slots) {
+    std::size_t count = slots.vertex.size();
+    for (const formats::Primitive& p : scene.primitives) {
+        count += slots.empty() ? p.position.size() : 0;
+    }
+    std::vector<bool> is_used(count, false);
     std::uint32_t first = 0;
     for (const formats::Primitive& p : scene.primitives) {
-        std::vector<bool> is_used(p.position.size(), false);
         for (const std::uint32_t vertex : p.index) {
-            is_used[vertex] = true;
-        }
-        for (std::uint32_t v = 0; v < is_used.size(); ++v) {
-            if (is_used[v]) {
-                used.push_back(first + v);
-            }
+            is_used[slots.empty() ? first + vertex : slots.slot[first + vertex]] = true;
         }
         first += static_cast<std::uint32_t>(p.position.size());
     }
+    std::vector<std::uint32_t> used;
+    for (std::uint32_t v = 0; v < count; ++v) {
+        if (is_used[v]) used.push_back(v);
+    }
     if (used.empty()) {
-        used.resize(first);
+        used.resize(count);
         std::iota(used.begin(), used.end(), 0u);
     }
     return used;

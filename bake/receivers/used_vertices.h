@@ -3,12 +3,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/opal/slots.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// Running numbers over all primitives, ascending, of the vertices that some triangle uses; of all
-/// where none is used. The others are never seen, so nothing is compared there.
-std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene);
+/// Running numbers over all primitives, ascending, of the vertices that some triangle uses, or of
+/// their slots where there are some; of all where none is used. The others are never seen, so
+/// nothing is compared there.
+std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene,
+                                              const formats::SlotsView& slots = {});
 
 }  // namespace opaline::bake

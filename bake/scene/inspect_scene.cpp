@@ -19,6 +19,7 @@
 #include "bake/scene/parts_apart.h"
 #include "bake/scene/scene_facts.h"
 #include "bake/scene/sent_share.h"
+#include "bake/scene/shared_rows.h"
 
 namespace opaline::bake {
 namespace {
@@ -48,7 +49,6 @@ bool folds_inward(const BodyShell& shell) {
 // Size, colours and the tilt of shading normals against their facets. Volumes are those of cones
 // with their tip at `origin`, a point of the material's surface, so that holes take little away.
 void inspect_primitive(const Primitive& primitive, glm::dvec3 origin, MaterialFacts& facts) {
-    facts.receivers += static_cast<double>(primitive.position.size());
     facts.triangles += static_cast<double>(primitive.index.size()) / 3;
     for (const glm::vec3 x : primitive.position) {
         facts.low = glm::min(facts.low, x);
@@ -254,11 +254,15 @@ bool SceneFacts::is_open() const {
     });
 }
 
-SceneFacts inspect_scene(const Scene& scene) {
+SceneFacts inspect_scene(const Scene& scene, bool shares_rows) {
     SceneFacts facts;
+    if (shares_rows) facts.slots = find_slots(scene);
     facts.material.resize(scene.materials.size());
     std::vector<std::optional<glm::dvec3>> origin(scene.materials.size());
-    for (const Primitive& primitive : scene.primitives) {
+    for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
+        const Primitive& primitive = scene.primitives[p];
+        facts.material[primitive.material].receivers +=
+            count_receivers_of(scene, facts.slots.view(), p);
         std::optional<glm::dvec3>& of_material = origin[primitive.material];
         if (!of_material && !primitive.position.empty()) {
             of_material = primitive.position[0];

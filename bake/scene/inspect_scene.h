@@ -12,6 +12,8 @@ namespace opaline::bake {
 /// nothing more is asked about occlusion. Else the whole scene is searched, unless an edge folds
 /// inward. Topology is that of parts whose boxes are apart; copies of one mesh are inspected once:
 /// a scene of instances costs a pass over its vertices and triangles.
-SceneFacts inspect_scene(const formats::Scene& scene);
+///
+/// `shares_rows`: finds SceneFacts::slots.
+SceneFacts inspect_scene(const formats::Scene& scene, bool shares_rows = false);
 
 }  // namespace opaline::bake

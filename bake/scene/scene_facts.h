@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "formats/opal/slots.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -90,6 +91,7 @@ struct MaterialFacts {
 struct SceneFacts {
     std::vector<MaterialFacts> material;  ///< as Scene::materials
     double triangles = 0, receivers = 0;
+    formats::Slots slots;  ///< vertices that share rows (shared_rows.h); receivers are slots then
 
     /// Nothing occludes light above the receivers' horizons: a single convex body, or surfaces that
     /// are all parts of one.

@@ -54,7 +54,7 @@ TEST(PredictMemory, MediaTakeSamplesAndWiderRows) {
     scene.primitives[0].index.resize(6000);
     const Knobs knobs = knobs_of(Quality::preview);
     const double opaque =
-        predict_memory(all_effects(), count_memory(all_effects(), scene, knobs), knobs, 1).bytes();
+        predict_memory(all_effects(), count_memory(all_effects(), scene, {}, knobs), knobs, 1).bytes();
     EXPECT_DOUBLE_EQ(
         opaque,
         predict_memory(all_effects(), count_memory(formats::SceneCounts{1, 1000, 6000}), knobs, 1)
@@ -62,7 +62,7 @@ TEST(PredictMemory, MediaTakeSamplesAndWiderRows) {
         << "known by size alone: as if opaque";
     scene.materials[0].medium = formats::Medium{};
     const MemoryPrediction wax =
-        predict_memory(all_effects(), count_memory(all_effects(), scene, knobs), knobs, 1);
+        predict_memory(all_effects(), count_memory(all_effects(), scene, {}, knobs), knobs, 1);
     EXPECT_GT(wax.bytes(), opaque);
     EXPECT_EQ(wax.largest().name, "surface samples");
 }
