@@ -59,6 +59,12 @@ TEST(SharedRows, EveryCopyOfAVertexShowsWhatTheVertexShowsBitForBit) {
                 ASSERT_EQ(shared[v], own[from[v]]) << v;
             }
             tests::expect_same_in_threads_and_ranges(copied, light, options);
+            // Vertices that share rows with those before the range.
+            for (std::uint32_t first = 1; first < from.size(); first += 101) {
+                std::vector<Rgb> rest(from.size() - first);
+                shade_range(copied.view(), light, first, rest, options);
+                ASSERT_TRUE(std::equal(rest.begin(), rest.end(), shared.begin() + first)) << first;
+            }
         }
     }
 }
