@@ -16,7 +16,7 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/usage_errors.h"
-#include "bake/trace/embree_scene.h"
+#include "bake/pipeline/provenance.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::cli {
@@ -37,8 +37,8 @@ std::string describe_version() {
     return fmt::format(
         "opaline {}\n.opal files   version {}\nray tracer    {}\nbuild         {}, {}\n"
         "OpenGL        {}",
-        OPALINE_VERSION, formats::kOpalVersion, bake::EmbreeScene::description(),
-        OPALINE_BUILD_TYPE, kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
+        OPALINE_VERSION, formats::kOpalVersion, bake::ray_tracer_name(), OPALINE_BUILD_TYPE,
+        kCompiler, kHasGl ? "yes" : "no: render draws on the CPU");
 }
 
 // `name`: of a command; empty: the program.

@@ -141,11 +141,15 @@ void add_other_errors(const BakeResult& result, Json& json) {
     if (result.layer_error) json["layer_error"] = layer_error_json(*result.layer_error);
 }
 
+std::string ray_tracer_name() {
+    return EmbreeScene::description();
+}
+
 std::string make_provenance(const formats::Scene& scene, const BakeResult& result) {
     const Knobs& knobs = result.knobs;
     Json root;
     root["generator"] = std::string("Opaline ") + OPALINE_VERSION;
-    root["ray_tracer"] = EmbreeScene::description();
+    root["ray_tracer"] = ray_tracer_name();
     root["scene"]["sha256"] = scene.sha256;
     for (const formats::Primitive& p : scene.primitives) {
         root["scene"]["primitives"].push_back(

@@ -25,6 +25,9 @@ nlohmann::ordered_json layer_error_json(const LayerErrorReport& error);
 /// Adds `model_error`, `volume_error` and `layer_error` of a bake, as far as they were measured.
 void add_other_errors(const BakeResult& result, nlohmann::ordered_json& json);
 
+/// What traces rays, with its version.
+std::string ray_tracer_name();
+
 /// The PROV section as JSON: scene, knobs, plan and measured error. It contains nothing that
 /// differs between two runs of the same bake: no seconds, dates, paths or thread counts.
 std::string make_provenance(const formats::Scene& scene, const BakeResult& result);
