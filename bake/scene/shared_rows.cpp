@@ -63,9 +63,16 @@ formats::Scene merge_vertices(const formats::Scene& scene, const formats::SlotsV
         to.material = from.material;
         to.position.reserve(slots.count(number));
         to.normal.reserve(slots.count(number));
+        const std::size_t given = from.position.size() - from.added.size();
         for (const std::uint32_t vertex : slots.vertex.subspan(first_slot, slots.count(number))) {
-            to.position.push_back(from.position[vertex - first_vertex]);
-            to.normal.push_back(from.normal[vertex - first_vertex]);
+            const std::uint32_t own = vertex - first_vertex;
+            to.position.push_back(from.position[own]);
+            to.normal.push_back(from.normal[own]);
+            if (own < given) continue;
+            to.added.push_back(from.added[own - given]);  // the last slots
+            for (std::uint32_t& corner : to.added.back().corner) {
+                corner = slots.slot[first_vertex + corner] - first_slot;
+            }
         }
         to.index.reserve(from.index.size());
         for (const std::uint32_t corner : from.index) {
