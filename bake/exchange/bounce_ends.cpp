@@ -19,6 +19,7 @@ BounceEnd end_of(const formats::Scene& scene, const PacketHits& hits, std::size_
             .error = hits.error[lane],
             .material = hits.material[lane],
             .side = side_of_hit(scene, hits, lane),
+            .triangle = triangle_of_hit(hits, lane),
             .is_met = true};
 }
 

@@ -16,6 +16,7 @@ struct BounceEnd {
     float error = 0;             ///< bound [m] on that of where it ends
     std::uint32_t material = 0;  ///< and side: of the surface that is met
     SeenSide side;
+    TrianglePlace triangle{};
     bool is_met = false, is_quarter = false;
     std::uint32_t cell = 0;  ///< of BounceGrid::cells, or quarters
 

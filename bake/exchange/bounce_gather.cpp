@@ -1,7 +1,11 @@
 #include "bake/exchange/bounce_gather.h"
 
+#include <array>
+#include <utility>
+
 #include "bake/exchange/bounce_rays.h"
 #include "bake/exchange/mirrored_cells.h"
+#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 namespace {
@@ -102,23 +106,36 @@ FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const Bounc
     return kernel;
 }
 
-BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
-                           const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
-                           std::uint64_t seed, std::vector<NodeWeight>& weights, LookUp look_up) {
+void append_weight(std::uint32_t node, const formats::Rgb& share,
+                   std::vector<NodeWeight>& weights) {
+    if (share.r == share.g && share.r == share.b) {
+        weights.push_back({node, share.r});
+        return;
+    }
+    const std::array<float, 3> by_band{share.r, share.g, share.b};
+    for (std::uint32_t band = 0; band < by_band.size(); ++band) {
+        weights.push_back({node, by_band[band], band});
+    }
+}
+
+BounceGather weigh_bounces(const BounceSpace& space, const BounceTree& tree, const Receiver& at,
+                           const BounceGrid& grid, std::uint64_t seed,
+                           std::vector<NodeWeight>& weights, LookUp look_up) {
     weights.clear();
     constexpr float kNoDistance = 1e-15f;
     const Frame frame = make_frame(at.normal);
     KernelAverage average;
     std::vector<BounceEnd> ends;
     BounceGather gathered;
-    gathered.rays = find_bounce_ends(scene, rays, at, grid, seed, ends);
+    gathered.rays = find_bounce_ends(space.scene, space.rays, at, grid, seed, ends);
     const auto share_of = [&](const BounceEnd& end) {
         return 1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
     };
     // What one scatterer errs by is averaged over again.
     constexpr std::uint32_t kMirroredRays = 1024, kOfScatterers = 256;
-    MirroredCells mirrored(scene, rays, at, frame, grid, seed,
-                           look_up == LookUp::nearest ? kOfScatterers : kMirroredRays);
+    MirroredCells mirrored(space, at, frame, grid, seed,
+                           look_up == LookUp::nearest ? kOfScatterers : kMirroredRays,
+                           look_up != LookUp::nearest);
     std::vector<std::uint32_t> mirroring(ends.size(), formats::kNone);  // of each end, its number
     for (std::size_t i = 0; i < ends.size(); ++i) {
         if (ends[i].sends()) {
@@ -138,20 +155,28 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
         const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
         const FootprintKernel kernel = footprint_of(at.origin, end, cell, frame);
         const float part = mirroring[i] == formats::kNone ? 0 : mirrored.mirrored(mirroring[i]);
-        share *= share_of_radiosity(scene.materials[end.material], part / share);
+        const bool is_by_lobe = mirroring[i] != formats::kNone && mirrored.is_lobe(mirroring[i]);
+        const float kept = part / share;
+        if (!is_by_lobe) share *= share_of_radiosity(space.scene.materials[end.material], kept);
+        const std::size_t first = weights.size();
         const glm::vec3 y = at.origin + end.distance * end.direction;
         const std::uint32_t node = tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
-        if (node == formats::kNone ||
-            (look_up == LookUp::kernel &&
-             average.add(tree, kernel, wanted, tree.brightness(node), share, weights))) {
-            continue;
+        if (node != formats::kNone &&
+            !(look_up == LookUp::kernel &&
+              average.add(tree, kernel, wanted, tree.brightness(node), share, weights))) {
+            weights.push_back({node, share});
         }
-        weights.push_back({node, share});
+        for (NodeWeight& own : std::span(weights).subspan(first)) {
+            if (is_by_lobe || tree.mirrored(own.node) > 0) {
+                own.weight *= share_beside_lobe(tree, own.node, is_by_lobe ? kept : 0);
+            }
+        }
     }
-    std::ranges::sort(weights, {}, &NodeWeight::node);
+    std::ranges::sort(weights, {}, [](const NodeWeight& w) { return std::pair(w.node, w.band); });
     std::size_t kept = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) {
-        if (kept > 0 && weights[kept - 1].node == weights[i].node) {
+        if (kept > 0 && weights[kept - 1].node == weights[i].node &&
+            weights[kept - 1].band == weights[i].band) {
             weights[kept - 1].weight += weights[i].weight;
         } else {
             weights[kept++] = weights[i];
@@ -163,8 +188,33 @@ BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
 
 void add_node_rows(const BounceTree& tree, std::span<const NodeWeight> weights,
                    std::span<float> rows) {
+    constexpr std::size_t kTexels = std::size_t{6} * kBounceCubemap * kBounceCubemap;
+    // Lobes see much of the sky: its texels become one row.
+    const std::size_t bands = tree.has_lobes() ? rows.size() / kTexels : 0;
+    std::vector<float> sky;
     for (const NodeWeight& w : weights) {
-        tree.rows().add(w.node, w.weight, rows);
+        const bool is_everywhere = w.band == NodeWeight::kAllBands;
+        if (bands > 0 && tree.is_sky(w.node)) {
+            sky.resize(rows.size());
+            for (std::size_t band = 0; band < bands; ++band) {
+                if (is_everywhere || w.band == band) {
+                    tree.add_sky(w.node, w.weight, std::span(sky).subspan(band * kTexels, kTexels));
+                }
+            }
+        } else if (is_everywhere) {
+            tree.rows().add(w.node, w.weight, rows);
+        } else {
+            const std::size_t plane = rows.size() / 3;
+            tree.rows().add_part(w.node, w.band * plane, w.weight,
+                                 rows.subspan(w.band * plane, plane));
+        }
+    }
+    for (std::size_t begin = 0; begin < sky.size(); begin += kTexels) {
+        const std::span<float> plane = std::span(sky).subspan(begin, kTexels);
+        formats::haar_forward_cube(plane, kBounceCubemap);
+        for (std::size_t k = 0; k < kTexels; ++k) {
+            rows[begin + k] += plane[k];
+        }
     }
 }
 

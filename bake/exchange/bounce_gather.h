@@ -11,11 +11,15 @@
 
 namespace opaline::bake {
 
-/// A node of the tree and its share of a point's irradiance.
+/// A node of the tree and its share of a point's irradiance: in all bands, or in one.
 struct NodeWeight {
+    static constexpr std::uint32_t kAllBands = 3;
     std::uint32_t node = 0;
     float weight = 0;
+    std::uint32_t band = kAllBands;
 };
+/// Appends a share that may differ between bands.
+void append_weight(std::uint32_t node, const formats::Rgb& share, std::vector<NodeWeight>& weights);
 
 /// Further results of a point's rays.
 struct BounceGather {
@@ -42,15 +46,15 @@ FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const Bounc
 /// node,
 ///     E = 1/N sum over N cells of cosine-distributed rays of B over the footprint of each.
 /// The ray decides whether a surface is seen and which; the mean of B over its cell has no noise of
-/// where in the cell it went. Rays that end on media go on as their boundaries mirror them, and
-/// read the scatterer or the texel of the sky where they end; the rest of their light is the
-/// medium's (share_of_radiosity). Overwrites `weights`.
-BounceGather weigh_bounces(const formats::Scene& scene, const RayScene& rays,
-                           const BounceTree& tree, const Receiver& at, const BounceGrid& grid,
-                           std::uint64_t seed, std::vector<NodeWeight>& weights,
-                           LookUp look_up = LookUp::kernel);
+/// where in the cell it went. Rays that end on media or narrow lobes go on as these mirror them,
+/// and read the scatterer or the texel of the sky where they end; the rest of their light is that
+/// of the surface itself (share_of_radiosity, share_beside_lobe). Overwrites `weights`.
+BounceGather weigh_bounces(const BounceSpace& space, const BounceTree& tree, const Receiver& at,
+                           const BounceGrid& grid, std::uint64_t seed,
+                           std::vector<NodeWeight>& weights, LookUp look_up = LookUp::kernel);
 
-/// Adds sum of weight * row of the node to `rows`, one as long as those of the tree.
+/// Adds sum of weight * row of the node to `rows`, one as long as those of the tree. Rows of one
+/// band have no weights that differ between bands.
 void add_node_rows(const BounceTree& tree, std::span<const NodeWeight> weights,
                    std::span<float> rows);
 

@@ -63,9 +63,9 @@ std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, Exc
     return light;
 }
 
-std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& rays,
-                                const BounceTree& tree, std::span<const SurfaceView> views,
-                                double solid_angle, std::uint64_t& traced) {
+std::vector<SeenNode> find_seen(const BounceSpace& space, const BounceTree& tree,
+                                std::span<const SurfaceView> views, double solid_angle,
+                                std::uint64_t& traced) {
     constexpr std::size_t kLanes = RayPacket::kSize;
     constexpr float kGrazing = 1e-2f;
     std::vector<SeenNode> seen;
@@ -74,30 +74,29 @@ std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& ray
     for (std::size_t begin = 0; begin < views.size(); begin += kLanes) {
         const std::span<const SurfaceView> some =
             views.subspan(begin, std::min(kLanes, views.size() - begin));
-        const PacketHits hits = closest_of(rays, some);
+        const PacketHits hits = closest_of(space.rays, some);
         for (std::size_t i = 0; i < some.size(); ++i) {
-            const SeenSide side = hits.hit[i] != 0 ? side_of_hit(scene, hits, i) : SeenSide{};
+            const SeenSide side = hits.hit[i] != 0 ? side_of_hit(space.scene, hits, i) : SeenSide{};
             if (!side.is_seen) continue;
             const float t = hits.distance[i];
             const float area =
                 static_cast<float>(solid_angle) * t * t / std::max(side.cosine, kGrazing);
-            const glm::vec3 y = some[i].origin + t * some[i].direction;
+            const RayEnd end = end_of_ray(space.scene, some[i].origin, some[i].direction, hits, i);
             const auto view = static_cast<std::uint32_t>(begin + i);
-            const MirroredRay ray = mirror(
-                scene, {y, some[i].direction, hits.error[i], hits.material[i], side}, 1, view);
+            const MirroredRay ray = mirror(space, end, {1, 1, 1}, view);
             const std::uint32_t node =
-                tree.find(y, {hits.material[i], side.behind, side.normal}, area);
+                tree.find(end.position, {end.material, side.behind, side.normal}, area);
             if (node != formats::kNone) {
-                seen.push_back(
-                    {node, view, share_of_radiosity(scene.materials[hits.material[i]], ray.share)});
+                const float share = share_of_own(space, tree, node, end, ray);
+                seen.push_back({node, view, {share, share, share}});
             }
-            if (ray.share > 0) {
+            if (ray.largest() > 0) {
                 mirrored.push_back(ray);
             }
         }
     }
     std::vector<MirroredNode> found;
-    traced += views.size() + follow_mirrored(scene, rays, tree, std::move(mirrored), found);
+    traced += views.size() + follow_mirrored(space, tree, std::move(mirrored), found);
     for (const MirroredNode& other : found) {
         seen.push_back({other.node, other.number, other.share});
     }
@@ -111,7 +110,7 @@ std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceVi
     if (views.empty() || light.rays.is_empty()) return 0;
     std::uint64_t traced = 0;
     const std::vector<SeenNode> seen =
-        find_seen(light.scene, light.rays, light.tree, views, solid_angle, traced);
+        find_seen(light.space(), light.tree, views, solid_angle, traced);
     const std::size_t texels = light.tree.row_size() / light.bands;
     const std::size_t terms = views.front().factor.size();
     std::vector<float> planes(terms * bands * texels), factor(terms * bands);
@@ -119,9 +118,11 @@ std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceVi
         std::ranges::fill(factor, 0.0f);
         for (end = begin; end < seen.size() && seen[end].node == seen[begin].node; ++end) {
             const SurfaceView& view = views[seen[end].view];
+            const BandColour share =
+                in_bands({seen[end].share.r, seen[end].share.g, seen[end].share.b}, bands);
             for (std::size_t k = 0; k < factor.size(); ++k) {
                 factor[k] += std::numbers::inv_pi_v<float> * view.factor[k / bands] *
-                             view.weight[k % bands] * seen[end].share;
+                             view.weight[k % bands] * share[k % bands];
             }
         }
         const std::vector<float> row = light.tree.rows().row(seen[begin].node);
@@ -152,9 +153,8 @@ std::uint64_t add_bounced(const BounceLight& light, const LitPoint& point,
         }
     } else {
         std::vector<NodeWeight> weights;
-        rays = weigh_bounces(light.scene, light.rays, light.tree, point.receiver, own, light.seed,
-                             weights)
-                   .rays;
+        rays =
+            weigh_bounces(light.space(), light.tree, point.receiver, own, light.seed, weights).rays;
         add_node_rows(light.tree, weights, sum);
     }
     add_to_finer(sum, light.cubemap_size, rows, cubemap_size, light.bands);

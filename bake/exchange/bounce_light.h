@@ -42,6 +42,7 @@ struct BounceLight {
     GatherSites sites;    ///< among receivers
     CodedRows site_rows;  ///< E, as long as the tree's
 
+    BounceSpace space() const { return {scene, rays, layouts}; }
     /// Variance of a fit to sites, of that of one: with it the fit is as good as the rays `instead`
     /// of it, were these independent.
     float most_noise(const BounceGrid& instead) const {
@@ -64,16 +65,16 @@ std::shared_ptr<const BounceLight> solve_exchange(const LightInputs& inputs, Exc
 /// What answers a view.
 struct SeenNode {
     std::uint32_t node = 0;
-    std::uint32_t view = 0;  ///< its number
-    float share = 1;         ///< of the view's light: less of what boundaries of media mirror
+    std::uint32_t view = 0;       ///< its number
+    formats::Rgb share{1, 1, 1};  ///< of the view's light: less of what is mirrored
 };
 
 /// For each view the node of its surface that is as large as the view's footprint, by nodes. Views
-/// that meet no radiating surface have none. Views that meet a medium have more, for the light
-/// that its boundary mirrors. `traced` counts up.
-std::vector<SeenNode> find_seen(const formats::Scene& scene, const RayScene& rays,
-                                const BounceTree& tree, std::span<const SurfaceView> views,
-                                double solid_angle, std::uint64_t& traced);
+/// that meet no radiating surface have none. Views that meet a medium or a narrow lobe have more,
+/// for the light that it mirrors. `traced` counts up.
+std::vector<SeenNode> find_seen(const BounceSpace& space, const BounceTree& tree,
+                                std::span<const SurfaceView> views, double solid_angle,
+                                std::uint64_t& traced);
 
 /// Adds the radiance that views see of other surfaces per unit of each basis light, times their
 /// weights and factors: to `rows`, a row for each factor, `bands` planes each as of add_bounced. It

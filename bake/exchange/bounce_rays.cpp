@@ -1,12 +1,14 @@
 #include "bake/exchange/bounce_rays.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <utility>
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
+#include "bake/exchange/narrow_lobe.h"
 #include "bake/physics/fresnel.h"
 #include "bake/physics/path_differentials/visible_normal.h"
 #include "bake/receivers/receiver.h"
@@ -59,6 +61,19 @@ double diffuse_reflectance(double eta) {
            8 * n4 * (n4 + 1) / (above * across * across) * std::log(n);
 }
 
+// Four directions around one, as far apart as halves of a texel of the sky: rays of a lobe are few
+// for a texel, and this is the linear interpolation between texels, if with as many points.
+std::array<glm::vec3, 4> spread_over_texel(const glm::vec3& direction) {
+    constexpr float kHalf = 0.5f / kBounceCubemap;  // a quarter of a texel's width
+    const Frame frame = make_frame(direction);
+    std::array<glm::vec3, 4> around;
+    for (std::size_t i = 0; i < around.size(); ++i) {
+        const float x = i % 2 == 0 ? -kHalf : kHalf, y = i < 2 ? -kHalf : kHalf;
+        around[i] = glm::normalize(direction + x * frame.u + y * frame.v);
+    }
+    return around;
+}
+
 bool is_boundary(const formats::Material& material) {
     return material.medium && !material.sheet;
 }
@@ -95,12 +110,25 @@ BounceGrid make_cut_grid(std::uint32_t count) {
     return grid;
 }
 
-MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
+RayEnd end_of_ray(const formats::Scene& scene, const glm::vec3& origin, const glm::vec3& direction,
+                  const PacketHits& hits, std::size_t lane) {
+    return {.position = origin + hits.distance[lane] * direction,
+            .direction = direction,
+            .error = hits.error[lane],
+            .material = hits.material[lane],
+            .side = side_of_hit(scene, hits, lane),
+            .triangle = triangle_of_hit(hits, lane)};
+}
+
+MirroredRay mirror(const BounceSpace& space, const RayEnd& end, const formats::Rgb& share,
                    std::uint32_t number) {
     constexpr float kGrazing = 1e-3f;
-    const formats::Material& material = scene.materials[end.material];
-    if (!is_boundary(material) || !end.side.is_seen) {
+    const formats::Material& material = space.scene.materials[end.material];
+    if (!end.side.is_seen) {
         return {};
+    }
+    if (!is_boundary(material)) {
+        return mirror_by_lobe(space, end, share, number);
     }
     const glm::vec3 normal = end.side.normal;
     const Frame frame = make_frame(normal);
@@ -111,7 +139,7 @@ MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
     const LobeSample lobe = sample_lobe(*material.medium, glm::normalize(to_eye), u[0], u[1]);
     return {.origin = end.position + end.error * normal,
             .direction = glm::normalize(frame.to_world(glm::vec3(lobe.direction))),
-            .share = share * static_cast<float>(lobe.share),
+            .share = static_cast<float>(lobe.share) * share,
             .number = number};
 }
 
@@ -121,17 +149,29 @@ float share_of_radiosity(const formats::Material& material, float mirrored) {
     return static_cast<float>((1 - static_cast<double>(mirrored)) / entering);
 }
 
-std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
-                              const BounceTree& tree, std::vector<MirroredRay> open,
-                              std::vector<MirroredNode>& found) {
+float share_beside_lobe(const BounceTree& tree, std::uint32_t node, float mirrored) {
+    constexpr float kNothingElse = 1e-4f;  // of such metals rounding is all that is left
+    const float beside = 1 - tree.mirrored(node);
+    return beside > kNothingElse ? std::max(0.0f, 1 - mirrored) / beside : 0;
+}
+
+float share_of_own(const BounceSpace& space, const BounceTree& tree, std::uint32_t node,
+                   const RayEnd& end, const MirroredRay& on, float arriving) {
+    return on.of_lobe > 0 || tree.mirrored(node) > 0
+               ? share_beside_lobe(tree, node, on.of_lobe)
+               : share_of_radiosity(space.scene.materials[end.material], on.largest() / arriving);
+}
+
+std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
+                              std::vector<MirroredRay> open, std::vector<MirroredNode>& found) {
     // Boundaries that face each other mirror a few hundredths of the arriving light, except at
     // grazing angles.
     constexpr int kMostMirrors = 4;
     constexpr float kFaint = 1e-5f;  // of the first ray's light: what is left stays where it is
     constexpr std::size_t kLanes = RayPacket::kSize;
-    const auto add = [&](std::uint32_t node, const MirroredRay& ray, float share) {
+    const auto add = [&](std::uint32_t node, const MirroredRay& ray, const formats::Rgb& share) {
         if (node != formats::kNone) {
-            found.push_back({node, share * ray.share, ray.number});
+            found.push_back({node, share, ray.number});
         }
     };
     std::uint64_t traced = 0;
@@ -141,27 +181,37 @@ std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
             const std::span<const MirroredRay> some =
                 std::span(open).subspan(begin, std::min(kLanes, open.size() - begin));
             traced += some.size();
-            const PacketHits hits = closest_of(rays, some);
+            const PacketHits hits = closest_of(space.rays, some);
             for (std::size_t i = 0; i < some.size(); ++i) {
                 const MirroredRay& ray = some[i];
                 if (hits.hit[i] == 0) {
-                    add(tree.sky_node(ray.direction), ray, 1);
+                    if (ray.of_lobe > 0) {
+                        for (const glm::vec3& d : spread_over_texel(ray.direction)) {
+                            add(tree.sky_node(d), ray, 0.25f * ray.share);
+                        }
+                    } else {
+                        add(tree.sky_node(ray.direction), ray, ray.share);
+                    }
                     continue;
                 }
-                const RayEnd end{.position = ray.origin + hits.distance[i] * ray.direction,
-                                 .direction = ray.direction,
-                                 .error = hits.error[i],
-                                 .material = hits.material[i],
-                                 .side = side_of_hit(scene, hits, i)};
+                const RayEnd end = end_of_ray(space.scene, ray.origin, ray.direction, hits, i);
                 if (!end.side.is_seen) continue;
-                MirroredRay on;
-                if (mirrors + 1 < kMostMirrors) on = mirror(scene, end, ray.share, ray.number);
-                if (on.share < kFaint) on.share = 0;
-                add(tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0),
-                    ray, share_of_radiosity(scene.materials[end.material], on.share / ray.share));
-                if (on.share > 0) {
+                const std::uint32_t node =
+                    tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0);
+                MirroredRay on = mirror(space, end, ray.share, ray.number);
+                if (mirrors + 1 == kMostMirrors || on.largest() < kFaint) {
+                    const std::uint32_t irradiance = on.of_lobe > 0 && node != formats::kNone
+                                                         ? tree.irradiance_node(node)
+                                                         : formats::kNone;
+                    add(irradiance, ray, on.share);
+                    if (irradiance == formats::kNone) {
+                        on = {};
+                    }
+                } else if (on.largest() > 0) {
                     next.push_back(on);
                 }
+                if (node == formats::kNone) continue;
+                add(node, ray, share_of_own(space, tree, node, end, on, ray.largest()) * ray.share);
             }
         }
         open = std::move(next);

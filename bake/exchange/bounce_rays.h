@@ -14,6 +14,7 @@
 #include "bake/base/rng.h"
 #include "bake/exchange/bounce_tree.h"
 #include "bake/exchange/scatterers.h"
+#include "bake/plan/row_layout.h"
 #include "bake/receivers/receiver.h"
 #include "bake/trace/packet_lane.h"
 #include "bake/trace/ray_scene.h"
@@ -21,45 +22,83 @@
 
 namespace opaline::bake {
 
+/// What rays of the exchange meet.
+struct BounceSpace {
+    const formats::Scene& scene;
+    const RayScene& rays;
+    /// By material; empty: no opaque or thin-walled surface is glossy.
+    std::span<const RowLayout> layouts{};
+};
+
+/// Where on a triangle a ray ends.
+struct TrianglePlace {
+    std::uint32_t primitive = 0, first_index = 0;  ///< into Primitive::index
+    float u = 0, v = 0;                            ///< weights of its second and third corner
+};
+inline TrianglePlace triangle_of_hit(const PacketHits& hits, std::size_t lane) {
+    return {hits.primitive[lane], hits.first_index[lane], hits.u[lane], hits.v[lane]};
+}
+
 /// A ray that meets a surface.
 struct RayEnd {
     glm::vec3 position{0}, direction{0};  ///< [m]; unit, of the ray
     float error = 0;                      ///< bound [m] on that of the position
     std::uint32_t material = 0;
     SeenSide side;
+    TrianglePlace triangle{};
 };
+/// Of a ray that has met something.
+RayEnd end_of_ray(const formats::Scene& scene, const glm::vec3& origin, const glm::vec3& direction,
+                  const PacketHits& hits, std::size_t lane);
 
-/// What the boundary of a medium mirrors of a ray's light, as one direction of its lobe.
+/// What a surface mirrors of a ray's light, as one direction of its lobe.
 struct MirroredRay {
     glm::vec3 origin{0}, direction{0};  ///< [m]; unit
-    float share = 0;                    ///< of the first ray's; 0: nothing is mirrored
+    formats::Rgb share{0, 0, 0};        ///< of the first ray's; 0: nothing is mirrored
     std::uint32_t number = 0;           ///< of the first ray
+    /// What the lobe of an opaque or thin-walled surface mirrors of the ray, in its largest band; 0
+    /// of a medium's boundary.
+    float of_lobe = 0;
+    bool is_weak = false;  ///< that lobe: a coat that mirrors little of light along its normal
+
+    float largest() const { return std::max({share.r, share.g, share.b}); }
 };
 
-/// By the Fresnel reflectance of its angle, about the facet's normal; of a rough boundary about one
-/// of the normals that the ray sees, GGX [Heitz2018], drawn by the ray's place and direction.
-/// Materials other than media mirror nothing here: their mirrored light is part of their radiosity
-/// (eval_surface_albedo).
-MirroredRay mirror(const formats::Scene& scene, const RayEnd& end, float share,
+/// The boundary of a medium mirrors by the Fresnel reflectance of its angle, about the facet's
+/// normal; a rough one about one of the normals that the ray sees, GGX [Heitz2018], drawn by the
+/// ray's place and direction. A narrow lobe of another surface (eval_narrow_lobe) mirrors its
+/// directional albedo toward the ray, in a direction that sample_narrow_lobe draws.
+MirroredRay mirror(const BounceSpace& space, const RayEnd& end, const formats::Rgb& share,
                    std::uint32_t number);
 
-/// The factor by which what a ray meets counts in it with its radiosity: 1 of surfaces. A medium
-/// keeps back what its boundary mirrors of the ray, where it sends 1 - F_ext of even light on
-/// average: of that its factor and `mirrored` make 1.
+/// The factor by which what a ray meets counts in it with its radiosity: 1 of surfaces (of those
+/// with narrow lobes share_beside_lobe). A medium keeps back what its boundary mirrors of the ray,
+/// where it sends 1 - F_ext of even light on average: of that its factor and `mirrored` make 1.
 float share_of_radiosity(const formats::Material& material, float mirrored);
 
-/// The node that answers a mirrored ray: of a surface, or of the sky.
+/// The factor by which the radiosity of a node counts in a ray, of which the lobe there mirrors
+/// `mirrored`: (1 - mirrored) / (1 - m), where m is what lobes mirror on average of even light at
+/// the node's scatterers. These send out at most 1 - m of it besides, so with `mirrored` it makes 1
+/// at most.
+float share_beside_lobe(const BounceTree& tree, std::uint32_t node, float mirrored);
+
+/// The one of both that holds for the radiosity of a node where a ray ends; `on`: what mirror() has
+/// made of a ray.
+float share_of_own(const BounceSpace& space, const BounceTree& tree, std::uint32_t node,
+                   const RayEnd& end, const MirroredRay& on, float arriving = 1);
+
+/// The node that answers a mirrored ray: of a surface, of its irradiance, or of the sky.
 struct MirroredNode {
     std::uint32_t node = 0;
-    float share = 0;  ///< of the first ray's light
+    formats::Rgb share{0, 0, 0};  ///< of the first ray's light
     std::uint32_t number = 0;
 };
 
-/// Follows mirrored rays from medium to medium, a few times, and appends their hits to `found`. The
-/// last medium mirrors nothing. Returns the rays traced.
-std::uint64_t follow_mirrored(const formats::Scene& scene, const RayScene& rays,
-                              const BounceTree& tree, std::vector<MirroredRay> open,
-                              std::vector<MirroredNode>& found);
+/// Follows mirrored rays from mirror to mirror, a few times, and appends their hits to `found`. The
+/// last medium mirrors nothing; of the last lobe the light is that of its point from all sides,
+/// its node of irradiance. Returns the rays traced.
+std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
+                              std::vector<MirroredRay> open, std::vector<MirroredNode>& found);
 
 /// Rays that `wanted` becomes: the square of a multiple of 4, at least 16.
 inline std::uint32_t count_bounce_rays(double wanted) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -83,6 +84,29 @@ BounceTree::BounceTree(std::span<const Scatterer> scatterers, std::size_t materi
     }
     rows_ = CodedRows(nodes_.size(), row_size_);
     set_sky();
+    set_lobes(scatterers);
+}
+
+void BounceTree::set_lobes(std::span<const Scatterer> scatterers) {
+    const std::vector<std::uint32_t> number = number_lobes(scatterers);
+    lobes_.scatterers = scatterers.size();
+    lobes_.count = count_lobes(number);
+    if (lobes_.count == 0 || row_size_ == 0) return;
+    const auto first = static_cast<std::uint32_t>(nodes_.size() + kSkyTexels);
+    rows_.resize(first + lobes_.count);
+    lobes_.mirrored.resize(nodes_.size());
+    lobes_.irradiance.assign(nodes_.size(), formats::kNone);
+    for (std::size_t v = nodes_.size(); v-- > 0;) {
+        const std::uint32_t i = extents_[v].scatterer, second = nodes_[v].right;
+        if (second != 0) {
+            const float left = nodes_[v + 1].cell / nodes_[v].cell;
+            lobes_.mirrored[v] =
+                left * lobes_.mirrored[v + 1] + (1 - left) * lobes_.mirrored[second];
+        } else if (number[i] != formats::kNone) {
+            lobes_.mirrored[v] = scatterers[i].mirrored();
+            lobes_.irradiance[v] = first + number[i];
+        }
+    }
 }
 
 void BounceTree::set_sky() {
@@ -110,10 +134,18 @@ std::uint32_t BounceTree::sky_node(glm::vec3 direction) const {
                      formats::texel_index(kBounceCubemap, {direction.x, direction.y, direction.z});
 }
 
+bool BounceTree::is_sky(std::uint32_t node) const {
+    return node >= nodes_.size() && node < nodes_.size() + kSkyTexels;
+}
+
+void BounceTree::add_sky(std::uint32_t node, float weight, std::span<float> texels) const {
+    assert(is_sky(node) && texels.size() == kSkyTexels);
+    texels[node - nodes_.size()] += weight * std::numbers::pi_v<float> / solid_angle_of_sky(node);
+}
+
 float BounceTree::solid_angle_of_sky(std::uint32_t node) const {
-    return node < nodes_.size()
-               ? std::numeric_limits<float>::infinity()
-               : sky_solid_angles_[(node - nodes_.size()) % sky_solid_angles_.size()];
+    return !is_sky(node) ? std::numeric_limits<float>::infinity()
+                         : sky_solid_angles_[(node - nodes_.size()) % sky_solid_angles_.size()];
 }
 
 float BounceTree::build(std::span<const Scatterer> scatterers, std::span<std::uint32_t> members,
@@ -228,6 +260,9 @@ void BounceTree::average(std::size_t node, std::span<const float> first,
 }
 
 void BounceTree::set_rows(const CodedRows& rows, const Context& context) {
+    for (std::size_t k = 0; k < lobes_.count && rows.count() > lobes_.scatterers; ++k) {
+        rows_.set(nodes_.size() + kSkyTexels + k, rows.row(lobes_.scatterers + k));
+    }
     constexpr std::size_t kBranch = 512;  // nodes, at most
     std::vector<std::size_t> size(nodes_.size(), 1), branches, trunk;
     for (std::size_t v = nodes_.size(); v-- > 0;) {

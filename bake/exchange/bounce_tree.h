@@ -48,7 +48,7 @@ inline float similarity(Brightness a, Brightness b) {
 /// kd-trees over scatterers, one for each material, side and nearest axis of the normal, so that
 /// the two sides of a thin part never mix. Every node has a row: the mean of its scatterers'.
 /// Texels of the sky have nodes as well, which no search finds; they are dark where rows are no
-/// cube maps.
+/// cube maps. So have irradiances of scatterers with narrow lobes.
 class BounceTree {
   public:
     /// Nodes that a search sets aside: at most as many as a tree is deep.
@@ -57,7 +57,8 @@ class BounceTree {
     /// `materials`: of the scene. Rows of `row_size` floats are 0 until set_rows.
     BounceTree(std::span<const Scatterer> scatterers, std::size_t materials, std::size_t row_size);
 
-    /// `rows`: of all scatterers. Where the context is cancelled, some are not set.
+    /// `rows`: of all scatterers, then of their irradiances (number_lobes). Where the context is
+    /// cancelled, some are not set.
     void set_rows(const CodedRows& rows, const Context& context = {});
 
     /// Toward y, the first node of an area of at most `footprint` [m^2]; 0: the scatterer in whose
@@ -74,6 +75,21 @@ class BounceTree {
     /// The node of the sky in a direction, whose row is what a surface of its radiance sends out:
     /// pi times the mean over its texel. formats::kNone where rows are no cube maps.
     std::uint32_t sky_node(glm::vec3 direction) const;
+    /// The node whose row is the irradiance of the scatterer of a leaf; formats::kNone where that
+    /// has none: only those with narrow lobes do.
+    std::uint32_t irradiance_node(std::uint32_t leaf) const {
+        return lobes_.irradiance.empty() ? formats::kNone : lobes_.irradiance[leaf];
+    }
+    /// What narrow lobes mirror on average of even light at the scatterers of a node, in the
+    /// largest band: no part of its row.
+    float mirrored(std::uint32_t node) const {
+        return node < lobes_.mirrored.size() ? lobes_.mirrored[node] : 0;
+    }
+    bool has_lobes() const { return !lobes_.mirrored.empty(); }
+    /// Whether a node is a texel of the sky.
+    bool is_sky(std::uint32_t node) const;
+    /// Adds the row of such a node, times a weight, to a plane of it that is still in texels.
+    void add_sky(std::uint32_t node, float weight, std::span<float> texels) const;
     /// Solid angle [sr] of the texel of a node of the sky; of other nodes infinity.
     float solid_angle_of_sky(std::uint32_t node) const;
     /// Of each scatterer, the area of its part of the surface [m^2].
@@ -120,6 +136,8 @@ class BounceTree {
     std::uint32_t root_of(const SurfaceSide& side) const;
     // Appends rows of the sky, in the order of its texels.
     void set_sky();
+    // Appends nodes of irradiance.
+    void set_lobes(std::span<const Scatterer> scatterers);
     // Rows of a node and all below it, one after the other; returns its own.
     std::vector<float> set_branch(const CodedRows& rows, Range nodes);
     // second becomes the node's mean of both its children.
@@ -129,6 +147,11 @@ class BounceTree {
     std::vector<Extent> extents_;          // of nodes
     std::vector<std::uint32_t> roots_;     // by material, side and axis
     std::vector<float> sky_solid_angles_;  // [sr], of the texels of a face
+    struct Lobes {
+        std::vector<float> mirrored;            // of nodes; empty: no scatterer has any
+        std::vector<std::uint32_t> irradiance;  // node of each leaf
+        std::size_t scatterers = 0, count = 0;  // all; those with lobes
+    } lobes_;
     CodedRows rows_;
     std::size_t row_size_;
 };

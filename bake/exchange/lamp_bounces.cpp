@@ -82,17 +82,23 @@ void add_caustic(std::span<const ParticleCell> cells, std::span<glm::dvec3> irra
     }
 }
 
-// B_0 of one lamp.
+// B_0 of one lamp. Irradiances, which the last of several mirrors shows, are 0: what comes straight
+// is in B_0 or a caustic.
 CodedRows light_at_once(const LampLight& lamps, const Transfer& transfer, const LampIrradiance& lit,
                         const Context& context) {
-    CodedRows emitted(lit.front.size(), kColourBands);
+    const std::size_t lobes = count_lobes(number_lobes(transfer.scatterers));
+    CodedRows emitted(lit.front.size() + lobes, kColourBands);
     for (std::size_t i = 0; i < lit.front.size(); ++i) {
         const Scatterer& s = transfer.scatterers[i];
         const formats::Material& material = lamps.scene.materials[s.material];
         glm::dvec3 reflect = colour_of(transfer.answers.reflect[i]);
-        // Particles have what metals mirror of a lamp.
+        // Particles have what metals mirror of a lamp; of what coats mirror rays follow what comes
+        // from surfaces.
         if (!material.sheet && !material.medium && material.gloss.metallic > 0) {
             reflect = {s.albedo.diffuse.r, s.albedo.diffuse.g, s.albedo.diffuse.b};
+        } else if (s.albedo.is_narrow) {
+            const formats::Rgb& coat = s.albedo.mirrored;
+            reflect += glm::dvec3(coat.r, coat.g, coat.b);
         }
         set_row(emitted, i,
                 glm::vec3(reflect * lit.front[i] +
@@ -116,7 +122,8 @@ CodedRows light_at_once(const LampLight& lamps, const Transfer& transfer, const 
 // What volumes leave of light of a node on its way to a place.
 glm::dvec3 volume_share(const BounceTree& tree, std::uint32_t node, const glm::dvec3& to,
                         const DensitySpace& volumes) {
-    if (node >= tree.size()) return glm::dvec3(1);  // of the sky, which has no lamps
+    // Of the sky, which has no lamps, or behind several mirrors.
+    if (node >= tree.size()) return glm::dvec3(1);
     const glm::dvec3 way = glm::dvec3(tree.centre(node)) - to;
     const double distance = glm::length(way);
     return distance > 0 ? volume_transmittance(&volumes, to, way / distance, distance)
@@ -197,12 +204,16 @@ std::vector<glm::dvec3> receive_light(const LampBounces& light, const LitPoint& 
     std::vector<NodeWeight> weights;
     // What volumes leave of a node's light is looked up for each.
     const LookUp look_up = straight.volumes != nullptr ? LookUp::node : LookUp::kernel;
-    rays += weigh_bounces(surfaces.scene, surfaces.rays, surfaces.tree, point.receiver,
+    rays += weigh_bounces(surfaces.space(), surfaces.tree, point.receiver,
                           point.is_averaged ? light.of_averaged : light.of_receiver, surfaces.seed,
                           weights, look_up)
                 .rays;
     for (const NodeWeight& w : weights) {
         glm::dvec3 share(w.weight);
+        if (w.band != NodeWeight::kAllBands) {
+            share = glm::dvec3(0);
+            share[static_cast<glm::length_t>(w.band)] = static_cast<double>(w.weight);
+        }
         if (straight.volumes != nullptr) {
             share *= volume_share(surfaces.tree, w.node, glm::dvec3(point.receiver.origin),
                                   *straight.volumes);

@@ -34,7 +34,8 @@ struct ArrivedParticles {
 
 /// Solves for the light that surfaces send out of what arrives at first: at points of scatterers
 /// straight from the lamps, or as particles have it where these know better, and in their cells by
-/// way of metals and media. What the boundary of a medium mirrors of both goes on as if diffuse.
+/// way of metals and media. What the boundary of a medium or a coat mirrors of both goes on as if
+/// diffuse.
 /// `surfaces`: with arrivals, or null; it and `lamps` must outlive the result. `arrived`: of each
 /// lamp.
 LampBounces find_lamp_bounces(const LampLight& lamps, const BounceLight* surfaces,

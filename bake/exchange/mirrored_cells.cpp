@@ -18,37 +18,39 @@ std::uint32_t count_parts(std::uint32_t cells, std::uint32_t most) {
 
 }  // namespace
 
-MirroredCells::MirroredCells(const formats::Scene& scene, const RayScene& rays, const Receiver& at,
-                             const Frame& frame, const BounceGrid& grid, std::uint64_t seed,
-                             std::uint32_t most_rays)
-    : scene_(scene),
-      rays_(rays),
+MirroredCells::MirroredCells(const BounceSpace& space, const Receiver& at, const Frame& frame,
+                             const BounceGrid& grid, std::uint64_t seed, std::uint32_t most_rays,
+                             bool cuts_lobes)
+    : space_(space),
       at_(at),
       frame_(frame),
       grid_(grid),
       seed_(seed),
       key_(key_of(at)),
+      cuts_lobes_(cuts_lobes),
       parts_(count_parts(grid.count(), most_rays)) {}
 
 std::uint32_t MirroredCells::add(const BounceEnd& end, float share) {
     const glm::vec3 y = at_.origin + end.distance * end.direction;
     const MirroredRay own =
-        mirror(scene_, {y, end.direction, end.error, end.material, end.side}, share, 0);
-    if (!(own.share > 0)) return formats::kNone;
+        mirror(space_, {y, end.direction, end.error, end.material, end.side, end.triangle},
+               {share, share, share}, 0);
+    if (!(own.largest() > 0)) return formats::kNone;
     const std::size_t first = open_.size();
     open_.push_back(own);
-    if (parts_ > 1 && !end.is_quarter) {
+    if (parts_ > 1 && !end.is_quarter && (own.of_lobe == 0 || (cuts_lobes_ && !own.is_weak))) {
         add_parts(end, share);
     }
     const float each = 1 / static_cast<float>(open_.size() - first);
     const auto cell = static_cast<std::uint32_t>(mirrored_.size());
     mirrored_.push_back(0);
+    is_lobe_.push_back(own.of_lobe > 0 ? 1 : 0);
     for (std::size_t i = first; i < open_.size(); ++i) {
-        open_[i].share *= each;
+        open_[i].share = each * open_[i].share;
         open_[i].number = static_cast<std::uint32_t>(i);
-        of_hemisphere_.push_back(each * share);
+        of_hemisphere_.push_back(open_[i].of_lobe > 0 ? 0 : each * share);
         cell_.push_back(cell);
-        mirrored_[cell] += open_[i].share;
+        mirrored_[cell] += open_[i].largest();
     }
     return cell;
 }
@@ -74,16 +76,14 @@ void MirroredCells::add_parts(const BounceEnd& end, float share) {
         set_lane(packet, lanes, part,
                  frame_.to_world(to_hemisphere(across * width, along * width)));
     }
-    const PacketHits hits = rays_.closest(lanes, packet);
+    const PacketHits hits = space_.rays.closest(lanes, packet);
     traced_ += count - 1;
     for (std::uint32_t part = 0; part < count; ++part) {
         if (hits.hit[part] == 0) continue;
         const glm::vec3 d = direction_of(packet, part);
-        const MirroredRay ray = mirror(scene_,
-                                       {at_.origin + hits.distance[part] * d, d, hits.error[part],
-                                        hits.material[part], side_of_hit(scene_, hits, part)},
-                                       share, 0);
-        if (ray.share > 0) {
+        const MirroredRay ray = mirror(space_, end_of_ray(space_.scene, at_.origin, d, hits, part),
+                                       {share, share, share}, 0);
+        if (ray.largest() > 0) {
             open_.push_back(ray);
         }
     }
@@ -91,21 +91,27 @@ void MirroredCells::add_parts(const BounceEnd& end, float share) {
 
 std::uint64_t MirroredCells::follow(const BounceTree& tree, std::vector<NodeWeight>& weights) {
     std::vector<MirroredNode> found;
-    traced_ += follow_mirrored(scene_, rays_, tree, std::move(open_), found);
+    traced_ += follow_mirrored(space_, tree, std::move(open_), found);
     open_.clear();
     std::ranges::stable_sort(found, {}, &MirroredNode::node);
     for (std::size_t begin = 0, end = 0; begin < found.size(); begin = end) {
-        float share = 0, hemisphere = 0;
+        formats::Rgb share{0, 0, 0}, of_lobes{0, 0, 0};
+        float hemisphere = 0;
         for (end = begin; end < found.size() && found[end].node == found[begin].node; ++end) {
-            share += found[end].share;
-            hemisphere += of_hemisphere_[found[end].number];
+            const float part = of_hemisphere_[found[end].number];
+            formats::Rgb& sum = part > 0 ? share : of_lobes;
+            sum = sum + found[end].share;
+            hemisphere += part;
         }
         const float most =
             std::numbers::inv_pi_v<float> * tree.solid_angle_of_sky(found[begin].node);
-        const float kept = std::min(1.0f, most / hemisphere);
-        weights.push_back({found[begin].node, share * kept});
+        const float kept = hemisphere > most ? most / hemisphere : 1.0f;
+        append_weight(found[begin].node, kept * share + of_lobes, weights);
         for (std::size_t i = begin; i < end; ++i) {
-            mirrored_[cell_[found[i].number]] -= (1 - kept) * found[i].share;
+            const formats::Rgb& own = found[i].share;
+            if (of_hemisphere_[found[i].number] > 0) {
+                mirrored_[cell_[found[i].number]] -= (1 - kept) * std::max({own.r, own.g, own.b});
+            }
         }
     }
     return traced_;

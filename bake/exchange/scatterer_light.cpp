@@ -32,6 +32,7 @@ struct LitScatterers {
     std::span<Scatterer> scatterers;
     std::span<const MediumRows> media;  // in the order of the answers
     ScattererLight light;
+    std::vector<std::uint32_t> lobe{};  // number_lobes
 
     const formats::Material& material(std::size_t i) const {
         return inputs.bake.scene.materials[scatterers[i].material];
@@ -60,13 +61,14 @@ float openness_of(std::span<const float> row) {
     return std::clamp(even_share(row), 0.0f, 1.0f);
 }
 
-// B of an opaque or thin-walled surface: rho E. What a lobe mirrors crosses no thin wall.
+// B of an opaque or thin-walled surface: rho E. What a lobe mirrors crosses no thin wall; of a
+// narrow one rays follow it (bounce_rays.h), and E is kept.
 std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions, std::size_t i) {
     Scatterer& s = field.scatterers[i];
     std::vector<float> row(kRowTexels), emitted(field.light.row_size());
-    formats::Rgb reflect = s.albedo.sum(), transmit{0, 0, 0};
+    formats::Rgb reflect = s.albedo.diffuse + s.albedo.spread(), transmit{0, 0, 0};
     if (const auto& sheet = field.material(i).sheet) {
-        reflect = s.albedo.diffuse * sheet->reflect + s.albedo.mirrored;
+        reflect = s.albedo.diffuse * sheet->reflect + s.albedo.spread();
         transmit = s.albedo.diffuse * sheet->transmit;
     }
     field.light.answers.reflect[i] = {reflect.r, reflect.g, reflect.b};
@@ -75,6 +77,11 @@ std::uint64_t light_surface(LitScatterers& field, const DirectionSet& directions
     s.openness = openness_of(row);
     add_scaled(row, in_bands(field.light.answers.reflect[i], field.light.bands), field.light.bands,
                emitted);
+    if (field.lobe[i] != formats::kNone) {
+        std::vector<float> irradiance(field.light.row_size());
+        add_scaled(row, {1, 1, 1}, field.light.bands, irradiance);
+        field.light.emitted.set(field.scatterers.size() + field.lobe[i], irradiance);
+    }
     if (field.material(i).sheet) {
         rays += gather_row(field, directions, s.beyond, row);
         field.light.open_beyond[i] = openness_of(row);
@@ -189,15 +196,18 @@ ScattererLight light_scatterers(const LightInputs& inputs, ExchangePoints& point
                                 std::span<const MediumRows> media, std::uint32_t bands,
                                 std::uint64_t& rays) {
     const std::size_t count = points.scatterers.size();
+    std::vector<std::uint32_t> lobe = number_lobes(points.scatterers);
+    const std::size_t rows = count + count_lobes(lobe);
     LitScatterers field{
         inputs,
         points.scatterers,
         media,
         {bands,
-         CodedRows(count, bands * kRowTexels),
+         CodedRows(rows, bands * kRowTexels),
          {std::vector<BandColour>(count), std::vector<BandColour>(count), std::move(points.media)},
          std::vector<float>(count),
-         CodedRows(0, bands * kRowTexels)}};
+         CodedRows(0, bands * kRowTexels)},
+        std::move(lobe)};
     rays += light_all(field);
     return std::move(field.light);
 }

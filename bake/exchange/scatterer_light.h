@@ -19,7 +19,9 @@ struct ScattererAnswers {
 /// What scatterers make of the environment's light and of each other's.
 struct ScattererLight {
     std::uint32_t bands = 3;  ///< or 1
-    CodedRows emitted;        ///< B without bounces, band by band, Haar
+    /// B without bounces, band by band, Haar; then E of scatterers with narrow lobes
+    /// (number_lobes).
+    CodedRows emitted;
     ScattererAnswers answers;
     std::vector<float> open_beyond;  ///< Scatterer::openness of the other side; of thin walls
     /// B of light of the sky that crosses a medium straight, but for the base colour; of scatterers

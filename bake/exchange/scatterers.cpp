@@ -147,6 +147,24 @@ void filter_albedo(const LightInputs& inputs, std::span<const Seen> chosen,
 
 }  // namespace
 
+float Scatterer::mirrored() const {
+    const formats::Rgb& c = albedo.mirrored;
+    return albedo.is_narrow ? std::clamp(std::max({c.r, c.g, c.b}), 0.0f, 1.0f) : 0;
+}
+
+std::vector<std::uint32_t> number_lobes(std::span<const Scatterer> scatterers) {
+    std::vector<std::uint32_t> numbers(scatterers.size(), formats::kNone);
+    std::uint32_t count = 0;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        if (scatterers[i].mirrored() > 0) numbers[i] = count++;
+    }
+    return numbers;
+}
+
+std::size_t count_lobes(std::span<const std::uint32_t> numbers) {
+    return numbers.size() - static_cast<std::size_t>(std::ranges::count(numbers, formats::kNone));
+}
+
 SeenSide side_of(const formats::Material& material, glm::vec3 normal, float cosine) {
     SeenSide side;
     side.behind = cosine > 0;

@@ -21,7 +21,14 @@ struct Scatterer {
     BodyPoint inside;
     float openness = 0;    ///< share of the light of an even sky that reaches it, in [0, 1]
     SurfaceAlbedo albedo;  ///< with textures: mean over its cell
+
+    /// What a narrow lobe mirrors on average of even light, in its largest band; 0 without one.
+    float mirrored() const;
 };
+/// The running number of each scatterer among those with narrow lobes; formats::kNone of others.
+std::vector<std::uint32_t> number_lobes(std::span<const Scatterer> scatterers);
+/// How many of those numbers there are.
+std::size_t count_lobes(std::span<const std::uint32_t> numbers);
 
 /// A hit of a ray as a scatterer sees it, or nothing: the back of a surface that has none.
 struct SeenSide {

@@ -114,6 +114,18 @@ class LampView {
         for (std::size_t lamp = 0; lamp < sum_.size(); ++lamp) {
             sum_[lamp] += weight * sent_by(bounces_, lamp, node);
         }
+        // What a coat mirrors of surfaces; metals go on.
+        const std::uint32_t irradiance = bounces_.surfaces->tree.irradiance_node(node);
+        if (irradiance == formats::kNone ||
+            light_.scene.materials[primitive.material].gloss.metallic > 0) {
+            return;
+        }
+        const std::uint32_t i = bounces_.surfaces->tree.scatterer_of(node);
+        const formats::Rgb& coat = bounces_.surfaces->transfer.scatterers[i].albedo.mirrored;
+        for (std::size_t lamp = 0; lamp < sum_.size(); ++lamp) {
+            sum_[lamp] +=
+                weight * glm::dvec3(coat.r, coat.g, coat.b) * sent_by(bounces_, lamp, irradiance);
+        }
     }
 
     void add_glow(const glm::dvec3& from, const glm::dvec3& direction, double reach,

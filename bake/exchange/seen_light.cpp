@@ -35,6 +35,23 @@ std::vector<float> cells_of(const BounceLight& light, std::span<const float> row
     return fine;
 }
 
+// B of a leaf with what a narrow lobe mirrors there as if diffuse: rays of volumes do not follow
+// it.
+std::vector<float> sent_to_all_sides(const BounceLight& light, std::uint32_t leaf) {
+    std::vector<float> row = light.tree.rows().row(leaf);
+    const std::uint32_t irradiance = light.tree.irradiance_node(leaf);
+    if (irradiance == formats::kNone) return row;
+    const formats::Rgb& c =
+        light.transfer.scatterers[light.tree.scatterer_of(leaf)].albedo.mirrored;
+    const BandColour mirrored = in_bands({c.r, c.g, c.b}, light.bands);
+    const std::size_t plane = row.size() / light.bands;
+    for (std::size_t b = 0; b < light.bands; ++b) {
+        light.tree.rows().add_part(irradiance, b * plane, mirrored[b],
+                                   std::span(row).subspan(b * plane, plane));
+    }
+    return row;
+}
+
 }  // namespace
 
 SeenLight see_surfaces(const BounceLight& light, const DensitySpace& space, const LightCells& cells,
@@ -49,7 +66,7 @@ SeenLight see_surfaces(const BounceLight& light, const DensitySpace& space, cons
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const std::uint32_t node = leaves[i];
                 gather_transmittance(space, cells, light.tree.centre(node), through);
-                const std::vector<float> sent = light.tree.rows().row(node);
+                const std::vector<float> sent = sent_to_all_sides(light, node);
                 for (std::size_t band = 0; band < bands; ++band) {
                     std::vector<float> row = cells_of(light, sent, band, bands, cells.n);
                     const std::size_t own = space.is_grey ? 0 : band * cells.size();

@@ -111,9 +111,8 @@ void light_new_sites(const LightInputs& inputs, BounceLight& light, std::vector<
             std::vector<NodeWeight> weights;
             std::vector<float> row(size);
             for (std::size_t i = done + range.begin; i < done + range.end; ++i) {
-                const BounceGather gathered =
-                    weigh_bounces(light.scene, light.rays, light.tree, sites[i].at, light.of_site,
-                                  light.seed, weights);
+                const BounceGather gathered = weigh_bounces(light.space(), light.tree, sites[i].at,
+                                                            light.of_site, light.seed, weights);
                 traced += gathered.rays;
                 sites[i].clearance = gathered.nearness > 0 ? 1 / std::sqrt(gathered.nearness)
                                                            : std::numeric_limits<float>::infinity();

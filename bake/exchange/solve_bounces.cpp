@@ -25,6 +25,7 @@ struct Field {
     std::span<const Scatterer> scatterers;
     ScattererLight& light;
 
+    BounceSpace space() const { return {inputs.bake.scene, inputs.bake.rays, inputs.layouts}; }
     bool passes_light(std::size_t i) const {
         return inputs.bake.scene.materials[scatterers[i].material].sheet.has_value();
     }
@@ -75,12 +76,12 @@ void weigh_through(const Field& field, const BounceTree& tree, const CrossingVie
             all[b] += double{view.weight[b]};
         }
     }
-    for (const SeenNode& seen : find_seen(field.inputs.bake.scene, field.inputs.bake.rays, tree,
-                                          crossing.views, crossing.solid_angle, rays)) {
+    for (const SeenNode& seen :
+         find_seen(field.space(), tree, crossing.views, crossing.solid_angle, rays)) {
         std::array<float, 3> weight = crossing.views[seen.view].weight;
-        for (float& w : weight) {
-            w *= seen.share;
-        }
+        weight[0] *= seen.share.r;
+        weight[1] *= seen.share.g;
+        weight[2] *= seen.share.b;
         const float mean = (weight[0] + weight[1] + weight[2]) / 3;
         if (!arrivals.through.empty() && arrivals.through.back().node == seen.node) {
             arrivals.through.back().weight += mean;
@@ -104,6 +105,32 @@ void weigh_through(const Field& field, const BounceTree& tree, const CrossingVie
     std::vector<float> to = field.light.emitted.row(i);
     add_scaled(of_sky, in_bands(sky_share, field.light.bands), kTexels, to);
     field.light.emitted.set(i, to);
+}
+
+// Light of the sky by way of lobes does not change from bounce to bounce: it becomes part of what
+// the scatterer has at once.
+void complete_by_mirrored_sky(const Field& field, const BounceTree& tree, std::size_t i,
+                              std::uint32_t lobe, Arrivals& arrivals) {
+    const std::uint32_t bands = field.light.bands;
+    CodedRows& emitted = field.light.emitted;
+    const auto take = [&](std::vector<NodeWeight>& weights, const BandColour& answer,
+                          bool is_front) {
+        const auto sky = std::ranges::stable_partition(
+            weights, [&](const NodeWeight& w) { return !tree.is_sky(w.node); });
+        if (sky.empty()) return;
+        std::vector<float> arriving(emitted.size());
+        add_node_rows(tree, sky, arriving);
+        std::vector<float> to = emitted.row(i);
+        add_scaled(arriving, in_bands(answer, bands), kTexels, to);
+        emitted.set(i, to);
+        if (is_front && lobe != formats::kNone) {
+            emitted.add(field.scatterers.size() + lobe, 1, arriving);
+            emitted.set(field.scatterers.size() + lobe, arriving);
+        }
+        weights.erase(sky.begin(), sky.end());
+    };
+    take(arrivals.front, field.light.answers.reflect[i], true);
+    take(arrivals.back, field.light.answers.transmit[i], false);
 }
 
 // The bounces after a last one, by which rows changed.
@@ -157,13 +184,13 @@ std::vector<Arrivals> weigh_scatterers(const LightInputs& inputs,
             through[answer.members[m]] = &media[k].through[m];
         }
     }
+    const std::vector<std::uint32_t> lobe = number_lobes(field.scatterers);
     constexpr std::size_t kBlock = 16;
     // The sky is known by many more rays than others are: what these rays meet takes what the sky
     // leaves, so that all shares add up to 1 and no bounce wins or loses light.
     const auto weigh = [&](const Receiver& at, float openness, std::vector<NodeWeight>& weights) {
-        const BounceGather gathered =
-            weigh_bounces(field.inputs.bake.scene, field.inputs.bake.rays, tree, at, grid,
-                          field.inputs.knobs.seed, weights, LookUp::nearest);
+        const BounceGather gathered = weigh_bounces(
+            field.space(), tree, at, grid, field.inputs.knobs.seed, weights, LookUp::nearest);
         for (NodeWeight& w : weights) {
             w.weight *= (1 - openness) / gathered.met;
         }
@@ -178,6 +205,9 @@ std::vector<Arrivals> weigh_scatterers(const LightInputs& inputs,
                 traced += weigh(s.outside, s.openness, arrivals[i].front);
                 if (field.passes_light(i)) {
                     traced += weigh(s.beyond, field.light.open_beyond[i], arrivals[i].back);
+                }
+                if (tree.has_lobes() && !field.inputs.layouts[s.material].translucent) {
+                    complete_by_mirrored_sky(field, tree, i, lobe[i], arrivals[i]);
                 }
                 if (through[i] != nullptr) {
                     weigh_through(field, tree, *through[i], i, scattered[i], arrivals[i], traced);
@@ -202,6 +232,7 @@ SolveReport add_bounces(const Transfer& transfer, const CodedRows& emitted, std:
             is_medium[i] = 1;
         }
     }
+    const std::vector<std::uint32_t> lobe = number_lobes(transfer.scatterers);
     // What neighbours see is mostly the same and still in the cache.
     const std::vector<std::uint32_t> order = tree.neighbours();
     SeriesEnd series;
@@ -233,6 +264,13 @@ SolveReport add_bounces(const Transfer& transfer, const CodedRows& emitted, std:
                         arriving.set(i, row);
                     } else {
                         add(arrivals[i].front, answers.reflect[i]);
+                        if (lobe[i] != formats::kNone) {
+                            // Its own irradiance: `row` is what others send.
+                            if (arrivals[i].front.empty()) std::ranges::fill(row, 0.0f);
+                            const std::size_t own = arrivals.size() + lobe[i];
+                            emitted.add(own, 1, row);
+                            leaving.set(own, row);
+                        }
                         add(arrivals[i].back, answers.transmit[i]);
                     }
                     add(arrivals[i].through, arrivals[i].of_through);

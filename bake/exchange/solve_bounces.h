@@ -21,7 +21,8 @@ struct Arrivals {
 };
 
 /// The arrivals of all scatterers: shares of a scatterer's rays and its sky add up to 1. `light`:
-/// its B_0 is completed by light of the sky that crosses media straight. `media`: as its answers.
+/// its B_0 is completed by light of the sky that crosses media straight or comes by way of narrow
+/// lobes. `media`: as its answers.
 /// `tree`: of the scatterers. Counts `rays`.
 std::vector<Arrivals> weigh_scatterers(const LightInputs& inputs,
                                        std::span<const Scatterer> scatterers,

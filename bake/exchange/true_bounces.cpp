@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "bake/exchange/bounce_rays.h"
+#include "bake/exchange/true_lobe.h"
 #include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/trace/packet_lane.h"
@@ -38,6 +40,7 @@ class TruePath {
         Rgb weight = (1 / static_cast<float>(count)) * Rgb{1, 1, 1};
         rays_ = 0;
         is_mirrored_ = false;
+        lobe_.reset();
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
             auto u = random_of(number, depth);
             if (depth == 0) {
@@ -59,6 +62,7 @@ class TruePath {
         if (!(most > 0)) return rays_;
         Receiver from;
         is_mirrored_ = false;
+        lobe_.reset();
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
             const auto u = random_of(number, depth);
             if (!(depth == 0 ? meet(along.origin, along.normal, u[2], from, weight)
@@ -86,6 +90,12 @@ class TruePath {
 
     // To the next surface, whose light counts. False: the path ends.
     bool step(Receiver& from, glm::vec2 u, float side_choice, Rgb& weight) {
+        if (lobe_) {
+            const auto onward = sample_true_lobe(*lobe_, u.x, u.y);
+            if (!onward) return false;
+            weight = weight * onward->weight;
+            return meet(from.origin, onward->direction, side_choice, from, weight);
+        }
         return from.normal != glm::vec3(0) &&
                meet(from.origin,
                     is_mirrored_ ? from.normal
@@ -100,10 +110,13 @@ class TruePath {
         const PacketHits hits = closest_of_one(light.rays, origin, direction);
         ++rays_;
         const SeenSide side = hits.hit[0] != 0 ? side_of_hit(light.scene, hits, 0) : SeenSide{};
-        if (hits.hit[0] == 0 && is_mirrored_) {
+        if (hits.hit[0] == 0 && lobe_) {
+            add_smooth_sky(origin, direction, weight);
+        } else if (hits.hit[0] == 0 && is_mirrored_) {
             add_node(light.tree.sky_node(direction), weight);
         }
         is_mirrored_ = false;
+        lobe_.reset();
         if (!side.is_seen) return false;
         const RowLayout& layout = light.layouts[hits.material[0]];
         const formats::Material& material = light.scene.materials[hits.material[0]];
@@ -113,18 +126,17 @@ class TruePath {
             make_surface_point(light.scene, {hits.primitive[0], hits.first_index[0]},
                                {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
         if (is_medium) {
-            const MirroredRay ray =
-                mirror(light.scene,
-                       {point.position, direction, hits.error[0], hits.material[0], side}, 1, 0);
+            const MirroredRay ray = mirror(
+                light.space(), {point.position, direction, hits.error[0], hits.material[0], side},
+                {1, 1, 1}, 0);
             add_node(
                 light.tree.find(point.position, {hits.material[0], side.behind, side.normal}, 0),
-                share_of_radiosity(material, ray.share) * weight);
+                share_of_radiosity(material, ray.largest()) * weight);
             next = {ray.origin, ray.direction};
-            weight = ray.share * weight;
-            is_mirrored_ = ray.share > 0;
+            weight = ray.largest() * weight;
+            is_mirrored_ = ray.largest() > 0;
             return is_mirrored_;
         }
-        const SurfaceAlbedo albedo = eval_surface_albedo(light.scene, layout, point);
         const SurfaceSample sample = make_surface_sample(light.scene, point, 0);
         const glm::vec3 lift = sample.receiver.origin - point.position;
         Receiver front = sample.receiver,
@@ -133,23 +145,47 @@ class TruePath {
             std::swap(front, back);
         }
         const auto& sheet = material.sheet;
-        if (!sheet) {
-            weight = weight * albedo.sum();
+        Rgb diffuse, mirrored{0, 0, 0};
+        const auto lobe = eval_lobe(
+            light.scene, layout,
+            surface_place(light.scene, point.primitive, point.first_index, point.barycentric));
+        std::optional<TrueLobe> seen;
+        if (lobe) {
+            seen =
+                make_true_lobe(lobe->surface, front.normal, side.normal, front.origin, direction);
+            diffuse = seen->albedo.diffuse * lobe->color;
+            mirrored = seen->albedo.specular;
+            rays_ += add_mirrored_suns(light.rays, truth_.suns, *seen,
+                                       std::numbers::pi_v<float> * weight, irradiance_);
+        } else {
+            diffuse = eval_surface_albedo(light.scene, layout, point).diffuse;
+        }
+        if (!sheet && !lobe) {
+            weight = weight * diffuse;
             add_sky(front, weight);
             next = front;
             return true;
         }
-        const Rgb reflect = albedo.diffuse * sheet->reflect + albedo.mirrored,
-                  transmit = albedo.diffuse * sheet->transmit;
-        add_sky(front, weight * reflect);
-        add_sky(back, weight * transmit);
-        const float reflected = largest(reflect), all = reflected + largest(transmit);
+        const Rgb reflect = sheet ? diffuse * sheet->reflect : diffuse,
+                  transmit = sheet ? diffuse * sheet->transmit : Rgb{0, 0, 0};
+        if (!lobe || largest(reflect) > 0) add_sky(front, weight * reflect);
+        if (sheet) add_sky(back, weight * transmit);
+        const float reflected = largest(reflect), through = largest(transmit);
+        const float by_lobe = largest(mirrored), all = reflected + through + by_lobe;
         if (!(all > 0)) return false;
+        // One of three; the side of a sheet without a lobe is chosen first.
+        const float lobe_share = by_lobe / all;
+        if (side_choice >= 1 - lobe_share) {
+            lobe_ = seen;
+            next = front;
+            weight = (1 / lobe_share) * weight;
+            return true;
+        }
         const float share = reflected / all;
         const bool is_reflected = side_choice < share;
         next = is_reflected ? front : back;
         weight = is_reflected ? (1 / share) * (weight * reflect)
-                              : (1 / (1 - share)) * (weight * transmit);
+                              : (1 / (1 - share - lobe_share)) * (weight * transmit);
         return true;
     }
 
@@ -162,6 +198,16 @@ class TruePath {
                                        from_sky_);
         for (std::size_t l = 0; l < from_sky_.size(); ++l) {
             irradiance_[l] += luminance_of(weight) * from_sky_[l];
+        }
+    }
+
+    // Where a lobe mirrors it. The suns are those of add_mirrored_suns.
+    void add_smooth_sky(glm::vec3 origin, glm::vec3 direction, Rgb weight) {
+        const double factor = std::numbers::pi * luminance_of(weight) *
+                              let_through(truth_.smooth.between, origin, direction);
+        const float* const radiance = truth_.smooth.towards(direction);
+        for (std::size_t l = 0; l < from_sky_.size(); ++l) {
+            irradiance_[l] += factor * static_cast<double>(radiance[l]);
         }
     }
 
@@ -188,7 +234,8 @@ class TruePath {
     std::span<double> irradiance_;
     std::vector<double> from_sky_;
     std::uint64_t rays_ = 0;
-    bool is_mirrored_ = false;  // where the path goes next is known
+    bool is_mirrored_ = false;      // where the path goes next is known
+    std::optional<TrueLobe> lobe_;  // or in which lobe
 };
 
 }  // namespace

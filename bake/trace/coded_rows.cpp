@@ -61,6 +61,11 @@ void CodedRows::add(std::size_t i, float weight, std::span<float> to) const {
     add_codes(&code_[i * size_], size_, weight * scale_[i], to.data());
 }
 
+void CodedRows::add_part(std::size_t i, std::size_t first, float weight,
+                         std::span<float> to) const {
+    add_codes(&code_[i * size_ + first], to.size(), weight * scale_[i], to.data());
+}
+
 std::vector<float> CodedRows::row(std::size_t i) const {
     std::vector<float> values(size_);
     add(i, 1, values);

@@ -33,6 +33,8 @@ class CodedRows {
     void set(std::size_t i, std::span<const float> row);
     /// to += weight * row i.
     void add(std::size_t i, float weight, std::span<float> to) const;
+    /// The same of the values from `first` on.
+    void add_part(std::size_t i, std::size_t first, float weight, std::span<float> to) const;
     std::vector<float> row(std::size_t i) const;
     float value(std::size_t i, std::size_t k) const {
         return scale_[i] * static_cast<float>(code_[i * size_ + k]);

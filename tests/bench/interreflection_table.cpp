@@ -152,7 +152,7 @@ Exact exact_light(const World& w, std::size_t count) {
         const float rho = formats::luminance(e.points[i].albedo.sum());
         for (std::size_t k = 0; k < kTexels; ++k)
             emitted[i * kTexels + k] = rho * r[k];
-        weigh_bounces(w.scene, w.rays, *e.tree, e.points[i].outside, grid, 77, arrive[i],
+        weigh_bounces({w.scene, w.rays}, *e.tree, e.points[i].outside, grid, 77, arrive[i],
                       LookUp::nearest);
     });
     sum = emitted;
@@ -196,7 +196,7 @@ void compare(const World& w, const World& fine, std::uint32_t n) {
         std::vector<NodeWeight> weights;
         row.assign(kTexels, 0);
         const BounceGather found =
-            weigh_bounces(w.scene, w.rays, tree, from, grid, seed, weights, look_up);
+            weigh_bounces({w.scene, w.rays}, tree, from, grid, seed, weights, look_up);
         add_node_rows(tree, weights, row);
         return found.rays;
     };

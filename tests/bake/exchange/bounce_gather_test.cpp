@@ -36,8 +36,8 @@ TEST(BounceGather, SumOfWeightsIsTheFormFactor) {
     const double expected = 4 / std::numbers::pi * x / root * std::atan(x / root);
     double sum = 0;
     std::vector<NodeWeight> weights;
-    const BounceGather gathered = weigh_bounces(scene, rays, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}},
-                                                make_bounce_grid(4096), 1, weights);
+    const BounceGather gathered = weigh_bounces(
+        {scene, rays}, tree, {{0.5f, 1e-5f, 0.5f}, {0, 1, 0}}, make_bounce_grid(4096), 1, weights);
     EXPECT_EQ(gathered.rays, 4096u);
     // Of 1 / r^2, the integral of 1 / (pi r^6) over the plate.
     double nearness = 0;
@@ -60,7 +60,7 @@ TEST(BounceGather, BacksOfSingleSidedSurfacesSendNothing) {
     const RayScene rays = RayScene::build(scene, 1).value();
     const BounceTree tree(upper_plate(4), 2, 1);
     std::vector<NodeWeight> weights;
-    weigh_bounces(scene, rays, tree, {{0.5f, 2, 0.5f}, {0, -1, 0}}, make_bounce_grid(256), 1,
+    weigh_bounces({scene, rays}, tree, {{0.5f, 2, 0.5f}, {0, -1, 0}}, make_bounce_grid(256), 1,
                   weights);
     EXPECT_TRUE(weights.empty());
 }

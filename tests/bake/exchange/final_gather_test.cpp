@@ -89,7 +89,7 @@ Errors compare(const Room& room, const Waves& waves, std::uint32_t count) {
         const Parts truth = exact(at, fine), same_rays = exact(at, grid);
         const auto clustered = [&](LookUp look_up) {
             std::vector<NodeWeight> weights;
-            weigh_bounces(room.scene, room.rays, tree, at, grid, 1, weights, look_up);
+            weigh_bounces({room.scene, room.rays}, tree, at, grid, 1, weights, look_up);
             std::vector<float> row(kRowParts);
             add_node_rows(tree, weights, row);
             return row;

@@ -35,7 +35,7 @@ struct BlackMedium {
     template <class IsLit>
     double irradiance(const Receiver& at, IsLit&& is_lit, std::uint32_t count = 65536) const {
         std::vector<NodeWeight> weights;
-        weigh_bounces(scene, rays, tree, at, make_bounce_grid(count), 1, weights);
+        weigh_bounces({scene, rays}, tree, at, make_bounce_grid(count), 1, weights);
         std::vector<float> row(kTexels), light(kTexels);
         add_node_rows(tree, weights, row);
         const std::vector<double> face = formats::texel_solid_angles(kBounceCubemap);
@@ -144,7 +144,7 @@ double sum_of_shares(const BlackMedium& walls, const Receiver& at, std::uint32_t
     const BounceTree tree(scatterers, 1, kTexels);
     std::vector<NodeWeight> weights;
     const BounceGather gathered =
-        weigh_bounces(walls.scene, walls.rays, tree, at, make_bounce_grid(rays), 1, weights);
+        weigh_bounces({walls.scene, walls.rays}, tree, at, make_bounce_grid(rays), 1, weights);
     const double left = 1 - fresnel_moments(double{walls.scene.materials[0].medium->eta}).external;
     double sum = 0;
     for (const NodeWeight& w : weights) {
@@ -177,13 +177,13 @@ TEST(MirroredRays, TwoWallsOfACornerMirrorOneAfterTheOther) {
     const BlackMedium corner({tests::make_quad({0, 0, -1}, {0, 0, 2}, {2, 0, 0}),
                               tests::make_quad({0, 0, -1}, {0, 2, 0}, {0, 0, 2})});
     const glm::vec3 way = glm::normalize(glm::vec3(-0.6f, -0.5f, 0.1f));
-    const MirroredRay first{{0.5f, 0.2f, 0}, way, 1, 7};
+    const MirroredRay first{{0.5f, 0.2f, 0}, way, {1, 1, 1}, 7};
     std::vector<MirroredNode> found;
-    EXPECT_EQ(follow_mirrored(corner.scene, corner.rays, corner.tree, {first}, found), 3u);
+    EXPECT_EQ(follow_mirrored({corner.scene, corner.rays}, corner.tree, {first}, found), 3u);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].node, corner.tree.sky_node({-way.x, -way.y, way.z}));
     EXPECT_EQ(found[0].number, 7u);
-    EXPECT_NEAR(found[0].share,
+    EXPECT_NEAR(found[0].share.g,
                 fresnel_reflectance(static_cast<double>(-way.x), 1.5) *
                     fresnel_reflectance(static_cast<double>(-way.y), 1.5),
                 1e-6);
@@ -225,7 +225,7 @@ TEST(MirroredRays, NoTexelIsBrighterInABoundaryThanInAFlatMirror) {
     std::vector<NodeWeight> weights;
     for (int i = 0; i < 200; ++i) {
         const Receiver floor{{0.01f * static_cast<float>(1 + i), 0, 0}, {0, 1, 0}};
-        weigh_bounces(wall.scene, wall.rays, wall.tree, floor, make_bounce_grid(16), 1, weights);
+        weigh_bounces({wall.scene, wall.rays}, wall.tree, floor, make_bounce_grid(16), 1, weights);
         for (const NodeWeight& w : weights) {
             const double flat = face[w.node % face.size()] / std::numbers::pi;
             most = std::max(most, double{w.weight} / flat);
@@ -238,11 +238,11 @@ TEST(MirroredRays, NoTexelIsBrighterInABoundaryThanInAFlatMirror) {
 TEST(MirroredRays, OpaqueSurfacesAndIndexMatchedMediaMirrorNothingHere) {
     BlackMedium plate({tests::make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0})});
     const RayEnd end{.direction = {0, -1, 0}, .side = {true, false, {0, 1, 0}, 1}};
-    EXPECT_NEAR(mirror(plate.scene, end, 1, 0).share, 0.04, 1e-6);
+    EXPECT_NEAR(mirror({plate.scene, plate.rays}, end, {1, 1, 1}, 0).share.g, 0.04, 1e-6);
     plate.scene.materials[0].medium->eta = 1;
-    EXPECT_EQ(mirror(plate.scene, end, 1, 0).share, 0);
+    EXPECT_EQ(mirror({plate.scene, plate.rays}, end, {1, 1, 1}, 0).largest(), 0);
     plate.scene.materials[0].medium.reset();
-    EXPECT_EQ(mirror(plate.scene, end, 1, 0).share, 0);
+    EXPECT_EQ(mirror({plate.scene, plate.rays}, end, {1, 1, 1}, 0).largest(), 0);
 }
 
 }  // namespace

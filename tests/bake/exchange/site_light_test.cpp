@@ -67,7 +67,8 @@ TEST(SiteLight, PointsBetweenSitesHaveTheLightOfManyRays) {
         ++without;
         std::vector<NodeWeight> weights;
         const auto gather = [&](const BounceGrid& grid, std::uint64_t seed, std::span<float> row) {
-            weigh_bounces(world.scene, world.rays, light->tree, receivers[i], grid, seed, weights);
+            weigh_bounces({world.scene, world.rays}, light->tree, receivers[i], grid, seed,
+                          weights);
             add_node_rows(light->tree, weights, row);
         };
         gather(many, 1, truth);
