@@ -13,6 +13,7 @@
 #include "bake/exchange/scatterers.h"
 #include "bake/exchange/site_light.h"
 #include "bake/exchange/solve_bounces.h"
+#include "formats/opal/haar.h"
 
 namespace opaline::bake {
 std::uint32_t count_rays_of_site(std::uint32_t of_receiver) {
@@ -114,6 +115,8 @@ std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceVi
     const std::size_t texels = light.tree.row_size() / light.bands;
     const std::size_t terms = views.front().factor.size();
     std::vector<float> planes(terms * bands * texels), factor(terms * bands);
+    // By way of lobes, which see much of it: texels of the sky become one row.
+    std::vector<float> sky(light.tree.has_lobes() ? planes.size() : 0);
     for (std::size_t begin = 0, end = 0; begin < seen.size(); begin = end) {
         std::ranges::fill(factor, 0.0f);
         for (end = begin; end < seen.size() && seen[end].node == seen[begin].node; ++end) {
@@ -125,6 +128,13 @@ std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceVi
                              view.weight[k % bands] * share[k % bands];
             }
         }
+        if (!sky.empty() && light.tree.is_sky(seen[begin].node)) {
+            for (std::size_t k = 0; k < factor.size(); ++k) {
+                light.tree.add_sky(seen[begin].node, factor[k],
+                                   std::span(sky).subspan(k * texels, texels));
+            }
+            continue;
+        }
         const std::vector<float> row = light.tree.rows().row(seen[begin].node);
         for (std::size_t k = 0; k < factor.size(); ++k) {
             const float* const from =
@@ -133,6 +143,13 @@ std::uint64_t add_seen_light(const BounceLight& light, std::span<const SurfaceVi
             for (std::size_t t = 0; t < texels; ++t) {
                 to[t] += factor[k] * from[t];
             }
+        }
+    }
+    for (std::size_t begin = 0; begin < sky.size(); begin += texels) {
+        const std::span<float> plane = std::span(sky).subspan(begin, texels);
+        formats::haar_forward_cube(plane, light.cubemap_size);
+        for (std::size_t t = 0; t < texels; ++t) {
+            planes[begin + t] += plane[t];
         }
     }
     add_to_finer(planes, light.cubemap_size, rows, cubemap_size,

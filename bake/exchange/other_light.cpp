@@ -78,13 +78,15 @@ std::optional<BounceTruth> true_light_of(const EffectInputs& inputs,
 std::uint64_t add_true_other_light(const std::optional<BounceTruth>& light,
                                    const Receiver& receiver, std::uint64_t key, double share,
                                    TwoEstimates& radiance) {
-    constexpr std::uint32_t kSamples = 128;  // of each estimate
+    // Of each estimate; paths meet suns in lobes by chance.
+    constexpr std::uint32_t kSamples = 128, kWithLobes = 512;
     if (!light) return 0;
+    const std::uint32_t samples = light->light->tree.has_lobes() ? kWithLobes : kSamples;
     std::uint64_t rays = 0;
     for (const bool first : {true, false}) {
         Luminance& to = first ? radiance.first : radiance.second;
         Luminance irradiance(to.size());
-        rays += add_true_bounces(*light, receiver, 2 * key + (first ? 0 : 1), kSamples, irradiance);
+        rays += add_true_bounces(*light, receiver, 2 * key + (first ? 0 : 1), samples, irradiance);
         for (std::size_t l = 0; l < to.size(); ++l) {
             to[l] += share * std::numbers::inv_pi * irradiance[l];
         }
