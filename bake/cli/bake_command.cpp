@@ -151,8 +151,9 @@ std::vector<formats::Diagnostic> drop_said(std::vector<formats::Diagnostic> warn
 int run(const BakeCommand& options) {
     const std::atomic<bool>& interrupted = catch_interrupts();
     const auto wanted = parse_effects(options.scene);
-    const auto knobs = require(bake::resolve_knobs(bake::all_effects(), wanted));
+    auto knobs = require(bake::resolve_knobs(bake::all_effects(), wanted));
     auto imported = open_scene(options.scene, knobs, formats::CloudDetail::fields);
+    knobs = fit_memory(options.scene, imported.scene, knobs);
     require(bake::check_effects(bake::all_effects(), imported.scene, knobs));
     const std::vector<OutputFile> outputs = name_outputs(options);
     if (is_scene_ending(ending_of(options.output))) {

@@ -54,8 +54,9 @@ bool is_quick_to_refine(const formats::Scene& scene) {
 int run(const PlanCommand& options) {
     const bake::EffectTable& effects = bake::all_effects();
     const auto wanted = parse_effects(options.scene);
-    const auto knobs = require(bake::resolve_knobs(effects, wanted));
+    auto knobs = require(bake::resolve_knobs(effects, wanted));
     const auto imported = open_scene(options.scene, knobs, formats::CloudDetail::largest);
+    knobs = fit_memory(options.scene, imported.scene, knobs);
     require(bake::check_effects(effects, imported.scene, knobs));
     bake::Context context;
     context.threads = options.scene.bake.threads;

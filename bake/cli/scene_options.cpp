@@ -14,6 +14,7 @@
 #include "bake/effects/effects.h"
 #include "bake/effects/volumes/plan_volumes.h"
 #include "bake/pipeline/predict_memory.h"
+#include "bake/pipeline/refine_stage.h"
 #include "bake/scene/shared_rows.h"
 #include "formats/opal/terms.h"
 
@@ -238,6 +239,16 @@ formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs
     require(check(bake::count_memory(bake::all_effects(), imported.scene, slots.view(), knobs)));
     require(check_threads(threads));
     return imported;
+}
+
+bake::Knobs fit_memory(const SceneOptions& options, const formats::Scene& scene,
+                       const bake::Knobs& knobs) {
+    bake::Context context;
+    context.threads = options.bake.threads;
+    const unsigned threads = bake::thread_count(context);
+    return bake::fit_refinement(
+        bake::all_effects(), scene, knobs, threads,
+        options.memory_limit != 0 ? options.memory_limit : available_memory(threads));
 }
 
 bake::BakeOptions parse_effects(const SceneOptions& options) {

@@ -44,6 +44,10 @@ void add_error_option(const Command& command, SceneOptions& options);
 formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs& knobs,
                                   formats::CloudDetail detail);
 
+/// The knobs, with as many receivers at most as fit into memory.
+bake::Knobs fit_memory(const SceneOptions& options, const formats::Scene& scene,
+                       const bake::Knobs& knobs);
+
 /// The options of the bake with the effects to simulate: none named for `auto`, nor for `all`,
 /// which forces every one. Errors: usage, for those that are unknown or that this version does not
 /// simulate.

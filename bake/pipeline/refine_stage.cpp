@@ -8,7 +8,8 @@
 #include "bake/check/error_warnings.h"
 #include "bake/effects/emitters/plan_emitters.h"
 #include "bake/exchange/lamps/lamps.h"
-#include "bake/plan/effect.h"
+#include "bake/pipeline/predict_memory.h"
+#include "bake/scene/shared_rows.h"
 
 namespace opaline::bake {
 namespace {
@@ -44,6 +45,29 @@ RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers) {
     limits.longest_edge = choice.mode == RefineChoice::Mode::edges ? choice.longest_edge : 0;
     limits.seed = knobs.seed;
     return limits;
+}
+
+Knobs fit_refinement(const EffectTable& effects, const formats::Scene& scene, Knobs knobs,
+                     unsigned threads, std::uint64_t memory) {
+    if (knobs.refine.mode == RefineChoice::Mode::off || scene.primitives.empty()) return knobs;
+    const formats::Slots slots = knobs.simplify ? find_slots(scene) : formats::Slots{};
+    const MemoryCounts counts = count_memory(effects, scene, slots.view(), knobs);
+    const auto given = static_cast<double>(counts.scene.vertices);
+    // Memory is linear in receivers and triangles.
+    MemoryCounts twice = counts;
+    twice.scene.vertices *= 2;
+    twice.scene.indices *= 2;
+    twice.opaque_rows *= 2;
+    twice.translucent_rows *= 2;
+    const double needed = predict_memory(effects, counts, knobs, threads).bytes();
+    const double more = predict_memory(effects, twice, knobs, threads).bytes() - needed;
+    const double left = std::max(0.0, static_cast<double>(memory) - needed);
+    const auto receivers = static_cast<std::uint64_t>(given);
+    const std::uint64_t wanted = receivers + refine_limits(knobs, receivers).most_added;
+    if (more > 0 && left * given / more < static_cast<double>(wanted - receivers)) {
+        knobs.refine.max_receivers = receivers + static_cast<std::uint64_t>(left * given / more);
+    }
+    return knobs;
 }
 
 std::optional<formats::Diagnostic> describe_bound(const RefineReport& report) {

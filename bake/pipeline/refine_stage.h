@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "bake/base/context.h"
 #include "bake/base/stage_log.h"
+#include "bake/plan/effect.h"
 #include "bake/plan/knobs.h"
 #include "bake/refine/refine_scene.h"
 #include "formats/opal/result.h"
@@ -13,6 +15,11 @@ namespace opaline::bake {
 
 /// How far the knobs have receivers added to a scene of so many.
 RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers);
+
+/// The knobs with RefineChoice::max_receivers lowered to what is predicted to fit into `memory`
+/// [bytes]; as they are where nothing is refined.
+Knobs fit_refinement(const EffectTable& effects, const formats::Scene& scene, Knobs knobs,
+                     unsigned threads, std::uint64_t memory);
 
 /// A warning where the limit of receivers ended it; nothing where it did not.
 std::optional<formats::Diagnostic> describe_bound(const RefineReport& report);

@@ -28,9 +28,9 @@ TEST(Bake, ManyMoreThreadsThanCoresPrintNothing) {
 
 TEST(Bake, ReportHasTheKeysOfTheContract) {
     SmallScene small;
-    const Outcome bake =
-        run_well({"bake", small.scene(), "-o", small.path("a.opal"), "--report",
-                  small.path("r.json"), "--quality", "draft", "--seed", "7", "--threads", "2"});
+    const Outcome bake = run_well({"bake", small.scene(), "-o", small.path("a.opal"), "--report",
+                                   small.path("r.json"), "--refine", "off", "--quality", "draft",
+                                   "--seed", "7", "--threads", "2"});
     EXPECT_EQ(bake.out, "");
     const Json report = Json::parse(read_text(small.path("r.json")));
     EXPECT_THAT(report.at("version").get<std::string>(), ::testing::MatchesRegex("[0-9.]+"));

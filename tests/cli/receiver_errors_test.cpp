@@ -25,8 +25,8 @@ struct ErrorBake {
     // The first term's row, all bands.
     std::vector<double> row_of(std::uint32_t vertex) const {
         const formats::AssetView& view = loaded.view;
-        const auto primitive = static_cast<std::size_t>(&formats::primitive_of(view, vertex) -
-                                                        view.primitives.data());
+        const auto primitive =
+            static_cast<std::size_t>(&formats::primitive_of(view, vertex) - view.primitives.data());
         std::vector<float> dense(formats::cubemap_texels(view.cubemap_size));
         formats::decode_row(view.transport, view.rows_of(primitive),
                             view.slot_of(primitive, vertex), 0, dense);
@@ -39,9 +39,9 @@ struct ErrorBake {
 };
 
 std::string bake_direct(const SmallScene& small, const std::string& name, Arguments more) {
-    run_well(join(
-        {"bake", small.scene(), "-o", small.path(name), "--cubemap", "16", "--effects", "direct"},
-        more));
+    run_well(join({"bake", small.scene(), "-o", small.path(name), "--cubemap", "16", "--effects",
+                   "direct", "--refine", "off"},
+                  more));
     return small.path(name);
 }
 

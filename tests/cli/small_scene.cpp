@@ -87,7 +87,8 @@ std::string SmallScene::baked() {
     if (std::filesystem::exists(file)) return file;
     std::string& bake = bakes[read_text(scene())];
     if (bake.empty()) {
-        run_well({"bake", scene(), "-o", file, "--cubemap", "16", "--coefficients", "all"});
+        run_well({"bake", scene(), "-o", file, "--cubemap", "16", "--coefficients", "all",
+                  "--refine", "off"});
         bake = read_text(file);
     } else {
         write_file(file, bake);
