@@ -113,6 +113,7 @@ bool halve_worst(const RefineJob& job, const RelativeErrors& error, WatchedMesh&
     struct Candidate {
         double weight;
         std::uint32_t triangle;
+        double rank = 0;
     };
     std::vector<Candidate> candidates;
     const double limit = job.limits.error * job.limits.error;
@@ -129,7 +130,11 @@ bool halve_worst(const RefineJob& job, const RelativeErrors& error, WatchedMesh&
         candidates.push_back({watched.mesh().area(t) * own, t});
         sum += candidates.back().weight;
     }
-    std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::weight);
+    // Alike ones come in their own order, whatever rounding makes of them.
+    for (Candidate& candidate : candidates) {
+        candidate.rank = std::round(1e6 * candidate.weight / sum);
+    }
+    std::ranges::stable_sort(candidates, std::greater<>(), &Candidate::rank);
     double halved = 0;
     for (const Candidate& candidate : candidates) {
         if (halved >= kShare * sum || job.is_full(watched.mesh().added())) break;

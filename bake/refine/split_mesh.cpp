@@ -24,6 +24,13 @@ void append_mixed(std::vector<T>& values, const formats::AddedVertex& at) {
     values.push_back(sum);
 }
 
+// To 16 bits.
+double rounded(double x) {
+    int exponent = 0;
+    const double mantissa = std::frexp(x, &exponent);
+    return std::ldexp(std::round(std::ldexp(mantissa, 16)), exponent - 16);
+}
+
 glm::vec3 unit_or_zero(glm::vec3 v) {
     constexpr float kShortest = 1e-6f;
     const float length = glm::length(v);
@@ -104,7 +111,9 @@ std::uint32_t SplitMesh::longest_side(std::uint32_t triangle) const {
 }
 
 double SplitMesh::longest_edge(std::uint32_t triangle) const {
-    return std::sqrt(length_of(triangle, longest_side(triangle)).square);
+    const std::uint32_t side = longest_side(triangle);
+    return glm::distance(glm::dvec3(position_[place_of(triangle, side)]),
+                         glm::dvec3(position_[place_of(triangle, (side + 1) % 3)]));
 }
 
 std::vector<std::uint32_t> SplitMesh::neighbours(std::uint32_t triangle) const {
@@ -155,7 +164,7 @@ SplitMesh::Length SplitMesh::length_of(std::uint32_t triangle, std::uint32_t sid
     const std::uint32_t a = place_of(triangle, side), b = place_of(triangle, (side + 1) % 3);
     const std::uint32_t low = std::min(a, b), high = std::max(a, b);
     const glm::dvec3 way = glm::dvec3(position_[high]) - glm::dvec3(position_[low]);
-    return {glm::dot(way, way), Edge{low} << 32 | high};
+    return {rounded(glm::dot(way, way)), Edge{low} << 32 | high};
 }
 
 void SplitMesh::link(std::uint32_t triangle) {

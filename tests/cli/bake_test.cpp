@@ -274,7 +274,7 @@ TEST(Bake, ProgressIsJsonLinesOnRequestAndSilentOffATerminal) {
         EXPECT_EQ(seen.back(), "end") << stage;
         EXPECT_LE(seen.size(), 22u) << stage;
     }
-    const Outcome silent = run_opaline({"bake", small.scene(), "-o", out});
+    const Outcome silent = run_opaline({"bake", small.scene(), "-o", out, "--refine", "off"});
     EXPECT_THAT(silent.err, StartsWith(out + ": 8 receivers, "));
     EXPECT_EQ(std::count(silent.err.begin(), silent.err.end(), '\n'), 1);
 }

@@ -81,8 +81,8 @@ TEST(Prediction, CacheThatIsDamagedOrCannotBeWrittenIsNoError) {
 TEST(Prediction, PlanTellsStagesAndTotalInJsonAndAtTheFootOfItsTable) {
     SmallScene small;
     keep(small.path("cache"), 2);
-    const Outcome plan =
-        run_with_cache(small.path("cache"), {"plan", small.scene(), "--json", "--threads", "2"});
+    const Outcome plan = run_with_cache(small.path("cache"), {"plan", small.scene(), "--json",
+                                                              "--threads", "2", "--refine", "off"});
     ASSERT_EQ(plan.exit_code, 0) << plan.err;
     const Json json = Json::parse(plan.out);
     const auto total = json.at("predicted_seconds_total").get<double>();
@@ -101,8 +101,8 @@ TEST(Prediction, PlanTellsStagesAndTotalInJsonAndAtTheFootOfItsTable) {
     EXPECT_NEAR(effects, total, 1e-9 * total);
     EXPECT_EQ(bytes, json.at("predicted_bytes_total").get<double>());
     EXPECT_EQ(json.at("receivers"), 8);
-    const Outcome table =
-        run_with_cache(small.path("cache"), {"plan", small.scene(), "--threads", "1"});
+    const Outcome table = run_with_cache(
+        small.path("cache"), {"plan", small.scene(), "--threads", "1", "--refine", "off"});
     EXPECT_THAT(table.out, HasSubstr("\nthe rest "));
     EXPECT_THAT(table.out,
                 ::testing::ContainsRegex("\npredicted: .* on 1 thread, .*, 8 receivers"));
