@@ -75,12 +75,12 @@ RelativeErrors sum_errors(const WatchedMesh& watched) {
     return sum;
 }
 
-// Half of the limit's square is met where triangles are watched, and no more of the rest is found.
+// The limit is met where triangles are watched, and no more of the rest is found.
 bool is_stuck(const RelativeErrors& before, const RelativeErrors& now, double limit) {
     constexpr double kFound = 0.05;
     for (std::size_t c = 0; c < now.seen.size(); ++c) {
         if (!is_met(now, c, limit) &&
-            (now.seen[c] > limit * limit / 2 || now.unseen[c] < (1 - kFound) * before.unseen[c])) {
+            (now.seen[c] > limit * limit || now.unseen[c] < (1 - kFound) * before.unseen[c])) {
             return false;
         }
     }
@@ -144,6 +144,14 @@ bool halve_worst(const RefineJob& job, const RelativeErrors& error, WatchedMesh&
     return halved > 0;
 }
 
+// How far the error has come from where it was to the limit, in per cent; 100 ends.
+void tell_progress(const RefineJob& job, double share) {
+    if (!job.context.on_progress) return;
+    constexpr std::uint64_t kWhole = 100;
+    const double part = std::clamp(share, 0.0, 1.0) * static_cast<double>(kWhole);
+    job.context.on_progress({"refinement", static_cast<std::uint64_t>(part), kWhole});
+}
+
 void halve_where_light_changes(const RefineJob& job, WatchedMesh& watched) {
     const double wanted = job.limits.probes_per_receiver * static_cast<double>(job.report.given);
     const auto all = static_cast<std::size_t>(std::clamp(wanted, 256.0, 65536.0));
@@ -165,6 +173,8 @@ void halve_where_light_changes(const RefineJob& job, WatchedMesh& watched) {
         const RelativeErrors before = std::exchange(error, sum_errors(watched));
         is_done = is_met(error, job.limits.error) || is_stuck(before, error, job.limits.error);
         job.report.error_after = error.worst();
+        const double whole = std::log(job.report.error_before / job.limits.error);
+        tell_progress(job, 0.99 * std::log(job.report.error_before / error.worst()) / whole);
     }
 }
 
@@ -193,11 +203,13 @@ RefinedScene refine_scene(const formats::Scene& scene, const RayScene& rays,
     const RefineJob job{limits, context, shortest, result.report};
     WatchedMesh watched(scene, rays, lamps, limits.cubemap_size, shortest, context);
     if (watched.mesh().size() == 0) return result;
+    tell_progress(job, 0);
     if (limits.longest_edge > 0) {
         halve_long_edges(job, watched.mesh());
     } else {
         halve_where_light_changes(job, watched);
     }
+    tell_progress(job, 1);
     result.report.added = watched.mesh().added();
     result.report.rays = watched.rays();
     if (result.report.added > 0) result.scene = watched.mesh().take();

@@ -73,10 +73,13 @@ SplitMesh::SplitMesh(const formats::Scene& scene) : scene_(scene), place_(scene.
         }
     }
     given_ = size();
-    next_.reserve(3 * triangles_.size());
+}
+
+void SplitMesh::link_all() {
+    if (!next_.empty()) return;
+    next_.assign(3 * triangles_.size(), kNoSide);
     first_.reserve(2 * triangles_.size());
     for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-        next_.insert(next_.end(), 3, kNoSide);
         link(t);
     }
 }
@@ -116,7 +119,8 @@ double SplitMesh::longest_edge(std::uint32_t triangle) const {
                          glm::dvec3(position_[place_of(triangle, (side + 1) % 3)]));
 }
 
-std::vector<std::uint32_t> SplitMesh::neighbours(std::uint32_t triangle) const {
+std::vector<std::uint32_t> SplitMesh::neighbours(std::uint32_t triangle) {
+    link_all();
     std::vector<std::uint32_t> found;
     for (std::uint32_t own = 0; own < 3; ++own) {
         for (std::uint32_t side = first_.at(length_of(triangle, own).edge); side != kNoSide;
@@ -128,6 +132,7 @@ std::vector<std::uint32_t> SplitMesh::neighbours(std::uint32_t triangle) const {
 }
 
 void SplitMesh::halve(std::uint32_t triangle, std::vector<Half>& halves) {
+    link_all();
     struct Wanted {
         std::uint32_t triangle;
         Edge edge;

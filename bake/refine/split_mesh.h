@@ -47,7 +47,7 @@ class SplitMesh {
     std::uint32_t longest_side(std::uint32_t triangle) const;
     double longest_edge(std::uint32_t triangle) const;  ///< [m]
     /// Triangles that share an edge with it.
-    std::vector<std::uint32_t> neighbours(std::uint32_t triangle) const;
+    std::vector<std::uint32_t> neighbours(std::uint32_t triangle);
     /// Vertices added to all primitives.
     std::uint64_t added() const { return added_; }
 
@@ -67,6 +67,7 @@ class SplitMesh {
 
     std::uint32_t place_of(std::uint32_t triangle, std::uint32_t side) const;
     Length length_of(std::uint32_t triangle, std::uint32_t side) const;
+    void link_all();  ///< where a mesh stays as it is, edges cost nothing
     void link(std::uint32_t triangle);
     void unlink(std::uint32_t triangle, std::uint32_t side);
     void halve_edge(Edge edge, std::vector<Half>& halves);
