@@ -55,7 +55,7 @@ glm::dvec3 sample_narrow_lobe(const formats::GlossSurface& lobe, const glm::dvec
     double sum = 0;
     for (std::size_t i = 0; i < kCandidates; ++i) {
         // One in each quarter of the square.
-        const double x = 0.5 * static_cast<double>(i % 2), y = 0.5 * static_cast<double>(i / 2);
+        const double x = 0.5 * static_cast<double>(i % 2), y = i < 2 ? 0.0 : 0.5;
         const glm::dvec3 m =
             sample_visible_normal(to_eye, {alpha, alpha}, 0.5 * static_cast<double>(u[0]) + x,
                                   0.5 * static_cast<double>(u[1]) + y)

@@ -115,11 +115,12 @@ void complete_by_mirrored_sky(const Field& field, const BounceTree& tree, std::s
     CodedRows& emitted = field.light.emitted;
     const auto take = [&](std::vector<NodeWeight>& weights, const BandColour& answer,
                           bool is_front) {
-        const auto sky = std::ranges::stable_partition(
-            weights, [&](const NodeWeight& w) { return !tree.is_sky(w.node); });
-        if (sky.empty()) return;
+        const auto sky =
+            std::stable_partition(weights.begin(), weights.end(),
+                                  [&](const NodeWeight& w) { return !tree.is_sky(w.node); });
+        if (sky == weights.end()) return;
         std::vector<float> arriving(emitted.size());
-        add_node_rows(tree, sky, arriving);
+        add_node_rows(tree, std::span(sky, weights.end()), arriving);
         std::vector<float> to = emitted.row(i);
         add_scaled(arriving, in_bands(answer, bands), kTexels, to);
         emitted.set(i, to);
@@ -127,7 +128,7 @@ void complete_by_mirrored_sky(const Field& field, const BounceTree& tree, std::s
             emitted.add(field.scatterers.size() + lobe, 1, arriving);
             emitted.set(field.scatterers.size() + lobe, arriving);
         }
-        weights.erase(sky.begin(), sky.end());
+        weights.erase(sky, weights.end());
     };
     take(arrivals.front, field.light.answers.reflect[i], true);
     take(arrivals.back, field.light.answers.transmit[i], false);
