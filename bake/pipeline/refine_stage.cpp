@@ -23,7 +23,7 @@ struct Fineness {
     std::uint32_t cubemap_size;
 };
 constexpr std::array<Fineness, 4> kFineness{{{0.10, 1, 4000, 0.1, 8},
-                                             {0.06, 2, 20000, 0.25, 8},
+                                             {0.045, 2, 20000, 0.25, 8},
                                              {0.025, 4, 80000, 0.5, 16},
                                              {0.015, 8, 200000, 0.5, 16}}};
 
