@@ -39,11 +39,11 @@ struct ShadeOptions {
 /// Outgoing radiance [W m^-2 sr^-1] of every receiver: L_o = base_color * <T_0, L>
 /// (Shading::diffuse; Shading::sheet with the row of the side seen; with gloss times (1 - metallic)
 /// (1 - max E)) or base_color * Ft * sum_k h_k(w_o') <T_k, L> (Shading::translucent), plus L_spec
-/// where it is glossy (gloss_model.h, specular.h). Products <T_k, L> have the light of emitters added.
-/// Each of these values is clamped to [0, largest float]; what belongs to no primitive is black,
-/// and so are translucent receivers that face away or have no normal. `light`: one for all, or by
-/// primitive. Preconditions: light.n == asset.cubemap_size, out.size() == asset.receivers(), the
-/// asset passed read_opal's checks.
+/// where it is glossy (gloss_model.h, specular.h). Products <T_k, L> have the light of emitters
+/// added. Each of these values is clamped to [0, largest float]; what belongs to no primitive is
+/// black, and so are translucent receivers that face away or have no normal. `light`: one for all,
+/// or by primitive. Preconditions: light.n == asset.cubemap_size, out.size() == asset.receivers(),
+/// the asset passed read_opal's checks.
 void shade(const formats::AssetView& asset, const PartLights& light, std::span<formats::Rgb> out,
            const ShadeOptions& options = {});
 

@@ -251,15 +251,15 @@ void add_bake_command(Program& program) {
                      "also print what is simulated and why, and what each stage took");
     add_progress_option(command, options.progress);
     // What a first bake needs, then the rest.
-    command.group(
-        {{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
-         {"What is simulated",
-          {"--effects", "--simplify", "--separate-terms", "--multiple-model", "--volume-method"}},
-         {"Machine", {"--threads", "--memory-limit"}},
-         {"What is reported",
-          {"--report", "--depfile", "--progress", "--verbose", "--check-model",
-           "--receiver-errors"}}},
-        "Knobs, which --quality and --error set");
+    command.group({{"", {"--output", "--media", "--quality", "--error", "--metres-per-unit"}},
+                   {"Receivers", {"--refine", "--max-receivers", "--simplify"}},
+                   {"What is simulated",
+                    {"--effects", "--separate-terms", "--multiple-model", "--volume-method"}},
+                   {"Machine", {"--threads", "--memory-limit"}},
+                   {"What is reported",
+                    {"--report", "--depfile", "--progress", "--verbose", "--check-model",
+                     "--receiver-errors"}}},
+                  "Knobs, which --quality and --error set");
     command.footer("Example:\n  opaline bake scene.glb -o scene.opal --quality production");
 }
 

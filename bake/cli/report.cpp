@@ -237,6 +237,12 @@ std::string make_plan_table(const bake::Knobs& knobs, const bake::RefineReport& 
         cost.receivers < cost.vertices
             ? fmt::format(" that share the rows of {} (--simplify)", cost.receivers)
             : "";
+    if (refined.given == 0 && cost.receivers > 0 &&
+        knobs.refine.mode != bake::RefineChoice::Mode::off) {
+        table +=
+            "receivers: of a scene as large as this one a plan does not look for those that a "
+            "bake adds\n";
+    }
     return table + fmt::format("predicted: {} on {}, {}, {} receivers{}, {} of memory\n",
                                format_seconds(cost.seconds),
                                threads == 1 ? "1 thread" : fmt::format("{} threads", threads),

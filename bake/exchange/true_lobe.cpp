@@ -61,7 +61,6 @@ std::uint64_t add_mirrored_suns(const RayScene& rays, const SunRays& suns, const
         packet.dir_x = sun.dir_x;
         packet.dir_y = sun.dir_y;
         packet.dir_z = sun.dir_z;
-        packet.tfar.fill(std::numeric_limits<float>::infinity());
         RayPacket::Lane radiance{};
         LaneMask lanes{};
         for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
@@ -75,11 +74,10 @@ std::uint64_t add_mirrored_suns(const RayScene& rays, const SunRays& suns, const
                 response * sun.flux[lane] *
                 formats::luminance(weight * facet_reflectance(lobe, glm::dot(lobe.to_eye, h)));
             lanes[lane] = radiance[lane] > 0 ? -1 : 0;
-            traced += lanes[lane] != 0 ? 1 : 0;
         }
-        if (!rays.is_empty()) rays.occluded(lanes, packet);
+        traced += keep_unoccluded(rays, packet, lanes);
         for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
-            if (lanes[lane] == 0 || !(packet.tfar[lane] > 0)) continue;
+            if (lanes[lane] == 0) continue;
             luminance[sun.light[lane]] +=
                 static_cast<double>(radiance[lane]) *
                 let_through(suns.between, lobe.origin,

@@ -21,7 +21,8 @@ glm::vec3 direction_of(const RayPacket& packet, std::uint32_t lane) {
     return {packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]};
 }
 
-// Traces the lanes above the horizon and keeps those that see the sky.
+}  // namespace
+
 std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask& lanes) {
     if (rays.is_empty()) return 0;
     packet.tfar.fill(std::numeric_limits<float>::infinity());
@@ -37,8 +38,6 @@ std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask&
     }
     return traced;
 }
-
-}  // namespace
 
 double let_through(const DensitySpace* between, glm::vec3 from, glm::vec3 direction) {
     if (between == nullptr) return 1;

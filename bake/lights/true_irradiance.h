@@ -33,6 +33,10 @@ struct SunRays {
 SunRays make_sun_rays(std::span<const TestLight> lights, std::uint32_t per_sun,
                       const DensitySpace* between = nullptr);
 
+/// Of the lanes that are on (-1), those between whose origin and the sky nothing stands stay so.
+/// Returns the number of rays.
+std::uint64_t keep_unoccluded(const RayScene& rays, RayPacket& packet, LaneMask& lanes);
+
 /// A factor of the light from direction w: constant + linear . w + w . square w.
 struct LightFactor {
     double constant = 1;

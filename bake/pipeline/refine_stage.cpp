@@ -83,7 +83,8 @@ std::optional<formats::Diagnostic> describe_bound(const RefineReport& report) {
     return formats::make_warning("", "refinement",
                                  "the limit of " + std::to_string(report.given + report.added) +
                                      " receivers is reached; " + left,
-                                 "give a larger --max-receivers, or a finer --quality");
+                                 "give a larger --max-receivers or a finer --quality, and a larger "
+                                 "--memory-limit where memory is what ends it");
 }
 
 formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const Knobs& knobs,

@@ -170,6 +170,10 @@ formats::Result<Knobs> resolve_knobs(const EffectTable& effects, const BakeOptio
     knobs.seed = options.seed;
     knobs.separate_terms = options.separate_terms;
     knobs.simplify = options.simplify;
+    if (options.refine.mode == RefineChoice::Mode::off && options.refine.max_receivers > 0) {
+        return make_error(ErrorKind::usage, "", "--max-receivers",
+                          "with --refine off no receivers are added", "leave out one of them");
+    }
     if (options.error != 0) {
         if (auto status = start_from_target(knobs, effects, options); !status) {
             return std::move(status).error();

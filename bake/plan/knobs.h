@@ -60,8 +60,8 @@ struct BakeOptions {
                                 ///< contributes, and no shortcut
     bool check_model = false;   ///< also measure the model's error against Monte Carlo
     RefineChoice refine = {};
-    std::uint64_t seed = 0;     ///< of everything random
-    unsigned threads = 0;       ///< 0: one per core; never changes the result
+    std::uint64_t seed = 0;  ///< of everything random
+    unsigned threads = 0;    ///< 0: one per core; never changes the result
 
     void set(const KnobSpec& knob, double value) { given.set(knob, value); }
 };

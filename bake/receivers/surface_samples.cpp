@@ -253,8 +253,9 @@ SurfaceSample make_surface_sample(const Scene& scene, const SurfacePoint& c, flo
     const float length = glm::length(normal);
     sample.normal = length > 0 && glm::dot(normal, c.normal) > 0 ? normal / length : c.normal;
     sample.receiver.normal = sample.normal;
-    sample.receiver.origin =
-        c.position + lift_to_smooth_surface(p, c.first_index, c.barycentric, c.position) + clearance_bound(c.position, extent) * c.normal;
+    sample.receiver.origin = c.position +
+                             lift_to_smooth_surface(p, c.first_index, c.barycentric, c.position) +
+                             clearance_bound(c.position, extent) * c.normal;
     return sample;
 }
 

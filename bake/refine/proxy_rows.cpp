@@ -18,12 +18,14 @@ namespace opaline::bake {
 namespace {
 
 constexpr std::uint32_t kLampSamples = 16;
+constexpr double kBrightest = 1e30;  // [lx]: differences and sums of brighter ones would overflow
 
 }  // namespace
 
 float DiffusiveReach::transmittance(float distance) const {
-    const float effective = std::sqrt(3 * absorption * (absorption + reduced));
-    return std::exp(-effective * distance) / (1 + 0.75f * reduced * distance);
+    const auto a = static_cast<double>(absorption), s = static_cast<double>(reduced),
+               d = static_cast<double>(distance);
+    return static_cast<float>(std::exp(-std::sqrt(3 * a * (a + s)) * d) / (1 + 0.75 * s * d));
 }
 
 DiffusiveReach reach_of(const formats::Medium& medium) {
@@ -113,7 +115,7 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
             const glm::dvec3 light =
                 straight_irradiance(rays_, lamps_[i], front, kLampSamples, traced, &volumes_);
             irradiance[std::min(i, rows.lamps - 1)] +=
-                static_cast<float>(light.x + light.y + light.z);
+                static_cast<float>(std::min(light.x + light.y + light.z, kBrightest));
         }
     }
     for (const std::vector<float>& own : transport) {

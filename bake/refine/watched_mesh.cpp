@@ -112,7 +112,7 @@ void WatchedMesh::trace(std::span<const ProxyPoint> points) {
 // A place of a triangle, a little inside it: on an edge rays may start in a wall.
 ProxyPoint WatchedMesh::point_in(std::uint32_t triangle, glm::vec3 weight) const {
     const SplitMesh::Triangle& t = mesh_[triangle];
-    const double way = 0.05 * shortest_ / mesh_.longest_edge(triangle);
+    const double way = std::min(0.5, 0.05 * shortest_ / mesh_.longest_edge(triangle));
     weight = glm::mix(weight, glm::vec3(1.0f / 3.0f), static_cast<float>(way));
     return {t.primitive, t.first_index,
             weight.x * t.weight[0] + weight.y * t.weight[1] + weight.z * t.weight[2]};

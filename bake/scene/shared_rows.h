@@ -19,8 +19,8 @@ std::uint32_t count_receivers_of(const formats::Scene& scene, const formats::Slo
                                  std::size_t primitive);
 
 /// The scene as receivers are placed in it: primitives have one vertex for each slot, with its
-/// position and normal, which of them were added, and the same triangles. Of all else only materials and the origin are
-/// there. Precondition: `slots` is not empty.
+/// position and normal, which of them were added, and the same triangles. Of all else only
+/// materials and the origin are there. Precondition: `slots` is not empty.
 formats::Scene merge_vertices(const formats::Scene& scene, const formats::SlotsView& slots);
 
 /// What each vertex has of what its slot has.

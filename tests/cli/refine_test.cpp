@@ -80,6 +80,9 @@ TEST(Refine, WhatIsNeitherIsRefused) {
             {"bake", small.scene(), "-o", small.path("a.opal"), "--max-receivers", value}, 2,
             "--max-receivers");
     }
+    expect_refused({"bake", small.scene(), "-o", small.path("a.opal"), "--refine", "off",
+                    "--max-receivers", "100"},
+                   2, "--max-receivers");
     EXPECT_EQ(list_folder(small.folder()), std::vector<std::string>{"scene.glb"});
 }
 

@@ -92,8 +92,8 @@ TEST_F(Terms, SingleScatteringHasTheViewTermsOfItsOwnNumberOfRows) {
     const PrimitiveRecord& p = asset.primitives[1];
     for (std::uint32_t v = p.first_vertex; v < single.size(); ++v) {
         std::vector<Rgb> rows(5);
-        dot_rows(asset.transport.view(), p.rows(p.vertex_count), light_, (v - p.first_vertex) * 5, rows,
-                 best_dot_path());
+        dot_rows(asset.transport.view(), p.rows(p.vertex_count), light_, (v - p.first_vertex) * 5,
+                 rows, best_dot_path());
         const ViewOfReceiver view =
             view_receiver(p, asset.position[v], asset.normal[v], Vec3{0, 2, 5});
         std::vector<float> h(4);

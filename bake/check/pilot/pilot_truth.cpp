@@ -35,7 +35,8 @@ void thin_out(const PilotScene& pilot, std::vector<PilotReceiver>& receivers) {
 
 std::vector<PilotReceiver> find_pilot_truth(const PilotScene& pilot, const Knobs& knobs) {
     const auto& sets = pilot.bake.receivers;
-    const std::vector<std::uint32_t> used = find_used_vertices(pilot.bake.scene, pilot.bake.facts.slots.view());
+    const std::vector<std::uint32_t> used =
+        find_used_vertices(pilot.bake.scene, pilot.bake.facts.slots.view());
     const std::size_t wanted = std::clamp(used.size() / kReceiversPerPilotReceiver,
                                           kLeastPilotReceivers, kMostPilotReceivers);
     std::vector<PilotReceiver> receivers;

@@ -63,7 +63,8 @@ double closed_body_error(const std::array<double, 3>& lengths, double mean_chord
 
 std::vector<BodyPoint> draw_body_points(const EffectInputs& inputs, std::size_t count) {
     std::vector<BodyPoint> all;
-    for (const std::uint32_t r : find_used_vertices(inputs.bake.scene, inputs.bake.facts.slots.view())) {
+    for (const std::uint32_t r :
+         find_used_vertices(inputs.bake.scene, inputs.bake.facts.slots.view())) {
         const ReceiverSet& set = set_of(inputs.bake.receivers, r);
         if (set.material == inputs.material && set.inside[r - set.first].normal != glm::vec3(0)) {
             all.push_back(set.inside[r - set.first]);

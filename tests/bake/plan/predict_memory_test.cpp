@@ -54,7 +54,8 @@ TEST(PredictMemory, MediaTakeSamplesAndWiderRows) {
     scene.primitives[0].index.resize(6000);
     const Knobs knobs = knobs_of(Quality::preview);
     const double opaque =
-        predict_memory(all_effects(), count_memory(all_effects(), scene, {}, knobs), knobs, 1).bytes();
+        predict_memory(all_effects(), count_memory(all_effects(), scene, {}, knobs), knobs, 1)
+            .bytes();
     EXPECT_DOUBLE_EQ(
         opaque,
         predict_memory(all_effects(), count_memory(formats::SceneCounts{1, 1000, 6000}), knobs, 1)

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/shared_rows.h"
@@ -9,6 +11,7 @@
 #include "formats/opal/cubemap.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
+#include "tests/support/volumes.h"
 
 namespace opaline::bake {
 namespace {
@@ -76,6 +79,29 @@ TEST(RefineScene, TwoTrianglesUnderABallGetItsShadow) {
     EXPECT_LT(found.report.added, 1500u);  // an even grid as good as theirs has 60 x 60
     EXPECT_EQ(found.report.added,
               found.scene->primitives[0].added.size() + found.scene->primitives[1].added.size());
+}
+
+// 500; by one estimate of each row alone 37,000.
+TEST(RefineScene, RoundingToAFewRaysAddsFewReceivers) {
+    EXPECT_LT(refine(ball_over_two_triangles(), some_limits(0.01)).report.added, 1000u);
+}
+
+// A shadow of a few of many small triangles: most of them lie where no point looks at first.
+TEST(RefineScene, NeighboursOfWhatErrsAreLookedAtInADenseMesh) {
+    const Scene scene = tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}, 24),
+                                           tests::make_sphere(3, 0.15f, {0.3f, 0.16f, 0.2f})});
+    const RefineLimits limits = some_limits(0.005);
+    const RefinedScene found = refine(scene, limits);
+    ASSERT_TRUE(found.scene);
+    EXPECT_LT(found.report.error_after, 0.4 * found.report.error_before);
+}
+
+TEST(RefineScene, VolumesCastShadowsToo) {
+    Scene scene = tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0})});
+    formats::SparseGrid<float> ball = tests::make_ball_grid(0.3, 0.05);
+    ball.to_scene = glm::translate(glm::dmat4(1), {0.3, 0.4, 0.2}) * ball.to_scene;
+    scene.volumes = {tests::make_volume(std::move(ball), 40, 0.5f, 0)};
+    EXPECT_GT(refine(scene, some_limits(0.05)).report.added, 30u);
 }
 
 TEST(RefineScene, FinerLimitsFollowTheShadowFurther) {
@@ -196,7 +222,7 @@ double least_openness(const Scene& scene) {
 // of a coarse mesh do, and not from a facet's horizon. So it does where triangles share no
 // vertices.
 TEST(RefineScene, AddedReceiversSeeTheHorizonOfTheSmoothSurface) {
-    const Scene scene = tests::make_scene({tests::make_sphere(1)});
+    const Scene scene = tests::make_scene({tests::make_sphere(0)});
     RefineLimits limits = some_limits(0);
     limits.longest_edge = 0.15;
     const RefinedScene found = refine(scene, limits);
