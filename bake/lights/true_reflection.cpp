@@ -28,7 +28,8 @@ void dim(const DensitySpace* between, glm::vec3 to, std::span<float> dense) {
 ReflectionTruth make_reflection_truth(std::span<const TestLight> lights,
                                       const DensitySpace* between) {
     constexpr std::uint32_t kRaysPerSun = 16;
-    return {make_direction_set(kTruthCubemap), make_sun_rays(lights, kRaysPerSun, between), lights};
+    return {make_texel_directions(kTruthCubemap), make_sun_rays(lights, kRaysPerSun, between),
+            lights};
 }
 
 TwoEstimates eval_reflection(const ReflectionTruth& truth, const RayScene& rays,

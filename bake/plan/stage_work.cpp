@@ -29,7 +29,7 @@ Work irradiance_work(const CostInput& input, double receivers, bool occluded) {
 }
 
 Work true_irradiance_work(const SubjectCost& cost) {
-    const double rays = count_rays(kTruthCubemap);
+    const double rays = texels(kTruthCubemap);
     return {0, cost.receivers * rays *
                    (cost.traces_rays ? kCoherentRay.at(cost.input.triangles) : kOpenCell)};
 }

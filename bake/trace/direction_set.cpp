@@ -12,11 +12,9 @@ glm::vec3 to_glm(formats::Vec3 v) {
     return {v.x, v.y, v.z};
 }
 
-}  // namespace
-
-namespace {
-
-// `fine`: cells along a face, n or 2 n. With n, rays pass through quarter `quarter` of each texel.
+// `fine`: cells along a face, n or 2 n. With n, rays pass through quarter `quarter` of each texel,
+// or through its centre.
+constexpr std::uint32_t kCentre = 4;
 DirectionSet make_set(std::uint32_t n, std::uint32_t fine, std::uint32_t quarter) {
     DirectionSet set;
     set.cubemap_size = n;
@@ -34,10 +32,11 @@ DirectionSet make_set(std::uint32_t n, std::uint32_t fine, std::uint32_t quarter
                 glm::vec3 sum(0);
                 for (std::uint32_t lane = 0; lane < RayPacket::kSize; ++lane) {
                     const std::uint32_t i = row + lane / 4, j = column + lane % 4;
-                    const glm::vec3 d = to_glm(
-                        fine == n ? formats::texel_direction(2 * n, face, 2 * i + quarter / 2,
-                                                             2 * j + quarter % 2)
-                                  : formats::texel_direction(fine, face, i, j));
+                    const glm::vec3 d =
+                        to_glm(quarter < kCentre
+                                   ? formats::texel_direction(2 * n, face, 2 * i + quarter / 2,
+                                                              2 * j + quarter % 2)
+                                   : formats::texel_direction(fine, face, i, j));
                     const formats::Vec3 m = moments[(std::size_t{face} * fine + i) * fine + j];
                     block.dir_x[lane] = d.x, block.dir_y[lane] = d.y, block.dir_z[lane] = d.z;
                     block.moment_x[lane] = m.x;
@@ -70,11 +69,15 @@ DirectionSet make_set(std::uint32_t n, std::uint32_t fine, std::uint32_t quarter
 }  // namespace
 
 DirectionSet make_direction_set(std::uint32_t n) {
-    return make_set(n, 2 * n, 0);
+    return make_set(n, 2 * n, kCentre);
 }
 
 DirectionSet make_sparse_direction_set(std::uint32_t n, std::uint32_t quarter) {
     return make_set(n, n, quarter);
+}
+
+DirectionSet make_texel_directions(std::uint32_t n) {
+    return make_set(n, n, kCentre);
 }
 
 }  // namespace opaline::bake

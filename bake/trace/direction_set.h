@@ -29,5 +29,7 @@ DirectionSet make_direction_set(std::uint32_t n);
 /// One ray per texel, through the centre of its quarter `quarter` in 0 ... 3. Neighbouring samples
 /// alternate quarters, so that the errors at texel edges average out.
 DirectionSet make_sparse_direction_set(std::uint32_t n, std::uint32_t quarter);
+/// One ray per texel, through its centre.
+DirectionSet make_texel_directions(std::uint32_t n);
 
 }  // namespace opaline::bake

