@@ -216,10 +216,6 @@ glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t) {
     return 0.5 * glm::cross(b - a, c - a);
 }
 
-BodyShells weld_triangles(const Scene& scene, std::uint32_t material) {
-    return weld_triangles(scene, primitives_of(scene, material));
-}
-
 BodyShells weld_triangles(const Scene& scene, std::span<const std::uint32_t> primitives) {
     BodyShells body;
     std::size_t vertices = 0;

@@ -47,11 +47,8 @@ std::array<glm::dvec3, 3> corners(const BodyShells& body, const BodyTriangle& t)
 /// Normal times area [m^2].
 glm::dvec3 area_vector(const BodyShells& body, const BodyTriangle& t);
 
-/// The triangles of a material's surface, as the scene turns them, not cut into shells: `position`
-/// and `triangle` alone. Those folded to a line are left out.
-BodyShells weld_triangles(const formats::Scene& scene, std::uint32_t material);
-
-/// As the former, of some primitives.
+/// The triangles of some primitives, as the scene turns them, not cut into shells: `position` and
+/// `triangle` alone. Those folded to a line are left out.
 BodyShells weld_triangles(const formats::Scene& scene, std::span<const std::uint32_t> primitives);
 
 /// The shells of a material's surface. Vertices at one position are one point. Triangles are
