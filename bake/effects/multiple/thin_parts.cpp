@@ -9,6 +9,7 @@
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
 #include "bake/lights/draw_receivers.h"
+#include "bake/physics/fresnel.h"
 #include "bake/plan/plan_input.h"
 #include "bake/receivers/used_vertices.h"
 #include "bake/trace/body.h"
@@ -25,7 +26,16 @@ constexpr std::array<Measured, 6> kMeasured{
     {{3, 0.47}, {7, 0.24}, {15, 0.14}, {30, 0.10}, {70, 0.06}, {165, 0.04}}};
 constexpr double kLargestError = 2;
 
+double source_depth(double eta) {
+    const double inside = fresnel_moments(eta).diffuse_internal();
+    return 1 + 4.0 / 3 * (1 + inside) / (1 - inside);
+}
+
 }  // namespace
+
+double boundary_reach(double eta) {
+    return std::max(1.0, source_depth(eta) / source_depth(1.5));
+}
 
 std::array<double, 3> transport_lengths(const formats::Medium& medium,
                                         const MediumProfile& profile) {
@@ -37,7 +47,7 @@ std::array<double, 3> transport_lengths(const formats::Medium& medium,
     for (std::size_t b = 0; b < 3; ++b) {
         const double extinction = (1 - g) * bands[b].sigma_s + bands[b].sigma_a;
         if (extinction > 0 && profile.total(b) > 0 && profile.total(b) >= kLeastShare * most) {
-            lengths[b] = 1 / extinction;
+            lengths[b] = boundary_reach(double{medium.eta}) / extinction;
         }
     }
     return lengths;

@@ -12,8 +12,15 @@
 
 namespace opaline::bake {
 
-/// Transport mean free path 1 / (sigma_s' + sigma_a) [m] of each band. 0: the band returns less
-/// than a tenth of the light of the brightest band, so that its error is invisible.
+/// How much farther light spreads beneath a boundary of index `eta` in [1/3, 3] than beneath one of
+/// 1.5, of which most that half_space_error has measured is: ratio of the depths 1 + 4 A / 3, A =
+/// (1 + F_dr) / (1 - F_dr), of the dipole's negative source in transport mean free paths
+/// [Jensen2001]; at least 1.
+double boundary_reach(double eta);
+
+/// Transport mean free path 1 / (sigma_s' + sigma_a) [m] of each band, times boundary_reach. 0: the
+/// band returns less than a tenth of the light of the brightest band, so that its error is
+/// invisible.
 std::array<double, 3> transport_lengths(const formats::Medium& medium,
                                         const MediumProfile& profile);
 

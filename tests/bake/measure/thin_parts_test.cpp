@@ -46,6 +46,20 @@ TEST(ThinParts, ErrorPassesThroughWhatWasMeasuredAndFallsWithTheChord) {
     EXPECT_EQ(half_space_error(0), 2);
 }
 
+// Balls of 27.75 mean free paths that absorb nothing, under white: .097, .188 and .30 are
+// missing at an index of 1.8, 2.4 and 3; of 60 at 2.4 .098.
+TEST(ThinParts, BallsErrMoreWhereTheirBoundaryKeepsLightInside) {
+    const auto ball = [](double radius, double eta) {
+        return half_space_error(4.0 / 3 * radius / boundary_reach(eta));
+    };
+    EXPECT_EQ(boundary_reach(0.5), 1);
+    EXPECT_EQ(boundary_reach(1.3), 1);
+    EXPECT_NEAR(ball(27.75, 1.8), 0.097, 0.03);
+    EXPECT_NEAR(ball(27.75, 2.4), 0.188, 0.05);
+    EXPECT_NEAR(ball(27.75, 3), 0.30, 0.08);
+    EXPECT_NEAR(ball(60, 2.4), 0.098, 0.03);
+}
+
 TEST(ThinParts, SheetWithoutARimErrsAsOneWithARim) {
     const auto sheet = tests::make_sheet(0.1f);
     const double length = 0.05;
