@@ -106,9 +106,9 @@ Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t
     coarse.cubemap_size = cubemap_size;
     for (const EffectDescriptor& effect : effects.effects) {
         for (const KnobSpec* knob : effect.knobs) {
-            if (knob->words.empty()) {
-                coarse.set(*knob, knob->coarse != 0 ? knob->coarse : knob->preset.front());
-            }
+            if (!knob->words.empty()) continue;
+            const double few = knob->coarse != 0 ? knob->coarse : knob->preset.front();
+            coarse.set(*knob, knob->theory.fine_is_small ? few : std::min(few, knobs[*knob]));
         }
     }
     return settle(std::move(coarse));

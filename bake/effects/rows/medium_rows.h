@@ -10,7 +10,7 @@
 namespace opaline::bake {
 
 /// The knobs of media where a step toward a result needs their rows: KnobSpec::coarse, or those of
-/// the coarsest preset, with the choices of `knobs`.
+/// the coarsest preset, or `knobs` where these are coarser, with the choices of `knobs`.
 Knobs coarse_knobs(const EffectTable& effects, const Knobs& knobs, std::uint32_t cubemap_size);
 
 /// What effects say of the media of an exchange, at the knobs of the preset `draft` and its cube
