@@ -117,10 +117,5 @@ TEST(Footprint, ParallelColumnsAreALine) {
     EXPECT_EQ(rms.minor, 0);
 }
 
-TEST(Footprint, ThinOnesKeepTheDigitsOfTheirWidth) {
-    const std::vector<glm::dvec2> thin{{1, 0}, {1, 1e-9}};
-    EXPECT_NEAR(pair_extent(rms_pair(thin)).minor / (1e-9 / std::sqrt(2.0)), 1, 1e-12);
-}
-
 }  // namespace
 }  // namespace opaline::bake

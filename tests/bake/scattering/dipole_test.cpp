@@ -78,14 +78,6 @@ TEST(Dipole, WithoutAbsorptionEverythingComesBack) {
     }
 }
 
-TEST(Dipole, NearlyNoAbsorptionFollowsTheExpansion) {
-    // R(1 - x) = 1 - (1 + 2 A / 3) sqrt(3 x) + ..., the expansion of the total in x = 1 - alpha'.
-    const double x = 1e-12;
-    const Dipole d = make_dipole(DipoleKind::classic, 1 - x, x, 1.3);
-    const double a = 0.75 * (d.z_virtual / d.z_real - 1);
-    EXPECT_NEAR(1 - dipole_total(d), (1 + 2 * a / 3) * std::sqrt(3 * x), 1e-10);
-}
-
 TEST(Dipole, FallsWithDistanceAndStaysFinite) {
     for (const DipoleKind kind : {DipoleKind::classic, DipoleKind::better}) {
         for (const double scale : {1e-6, 1.0, 1e6}) {
