@@ -10,8 +10,10 @@ using Xyz = std::array<double, 3>;
 
 /// Planck's law over wavelength [nm], in units of 2 h c^2 / nm^5.
 inline double planck(double nm, double kelvin) {
-    const double second_constant = 1.438777e7;  // [nm K]
-    return 1.0 / (std::pow(nm, 5) * std::expm1(second_constant / (nm * kelvin)));
+    constexpr double kSecond = 1.438777e7;  // [nm K]
+    constexpr double kMostExponent = 600;   // beyond, nothing is left
+    if (kSecond > kMostExponent * nm * kelvin) return 0;
+    return 1.0 / (std::pow(nm, 5) * std::expm1(kSecond / (nm * kelvin)));
 }
 
 /// A Gaussian with different widths on both sides.

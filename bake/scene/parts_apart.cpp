@@ -49,6 +49,7 @@ std::vector<std::vector<std::uint32_t>> list_parts_apart(const formats::Scene& s
             box.push_back(box_of(scene.primitives[p]));
         }
     }
+    if (own.empty()) return {};
     // A sweep along the longest axis: only boxes that reach as far as the next one begins meet it.
     PartBox all;
     for (const PartBox& b : box) {

@@ -89,6 +89,7 @@ SeparateBodies::SeparateBodies(const formats::Scene& scene, std::uint32_t materi
     }
     constexpr float kRoundings = 16 * 0x1p-23f;
     error_ = kRoundings * largest;
+    if (parts_.empty()) return;
     sort_parts();
     join_parts();
 }

@@ -86,7 +86,8 @@ Viewpoint zoom(const Viewpoint& from, double factor) {
     const double distance =
         std::clamp(static_cast<double>(length(away)) * factor, least, std::max(least, 1e30));
     Viewpoint moved = from;
-    moved.eye = from.target + static_cast<float>(distance) * normalize(away);
+    const Vec3 toward_eye = length(away) > 0 ? normalize(away) : Vec3{0, 0, 1};
+    moved.eye = from.target + static_cast<float>(distance) * toward_eye;
     return moved;
 }
 

@@ -9,10 +9,9 @@ namespace opaline::bake {
 std::optional<formats::Diagnostic> describe_unfinished(const std::string& material,
                                                        const WalkCounts& counts) {
     constexpr double kNoticed = 1e-3;
+    if (counts.walks == 0) return std::nullopt;
     const double share = counts.unfinished() / static_cast<double>(counts.walks);
-    if (!(share >= kNoticed)) {  // nor without walks
-        return std::nullopt;
-    }
+    if (share < kNoticed) return std::nullopt;
     std::string ends;
     for (const auto& [count, end] :
          {std::pair{counts.lost, "leave through holes of its mesh"},

@@ -1,11 +1,20 @@
 #include "bake/physics/path_differentials/lobe.h"
 
 #include <cmath>
+#include <limits>
 
 namespace opaline::bake {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 LobePoint eval_power(double exponent, double q) {
+    if (q >= 1) {  // the horizon, where the density ends but for S = 0
+        return {.cosine = 0,
+                .square_sine_over_q = 1,
+                .dcosine = exponent > 0 ? -kInfinity : -1,
+                .dln_pdf = exponent > 0 ? -kInfinity : 0};
+    }
     const double n = exponent + 1, log_cosine = std::log1p(-q) / n;
     const double per_share = exponent == 0 ? 1 : std::exp(-exponent * log_cosine);  // c / (1 - q)
     return {.cosine = std::exp(log_cosine),

@@ -123,7 +123,8 @@ ZonalTable make_power_table(PathKernel kernel, const formats::PhaseFunction& pha
 
 double ZonalRow::operator()(double ell) const {
     constexpr auto kLast = static_cast<float>(ZonalTable::kDepths - 1);
-    const float position = std::min(std::log(1 + static_cast<float>(ell)) * nodes_per_log, kLast);
+    const auto depth = static_cast<float>(std::min(ell, 1e30));  // beyond all nodes
+    const float position = std::min(std::log(1 + depth) * nodes_per_log, kLast);
     const Cubic cubic = place_cubic(position, ZonalTable::kDepths);
     const float* const node = value.data() + cubic.first;
     const float sum = cubic.weight[0] * node[0] + cubic.weight[1] * node[1] +

@@ -126,6 +126,7 @@ void learn_rates(std::span<const StageCost> predicted, const StageLog& ran, Stag
         }
     }
     for (const auto& [kind, sum] : sums) {
+        if (!(sum.work > 0)) continue;
         const double factor = sum.seconds / sum.work;
         if (sum.seconds < kLeastSeconds || !(factor > 1 / kMostFactor && factor < kMostFactor)) {
             continue;

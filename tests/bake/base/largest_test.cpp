@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <random>
 
@@ -27,7 +28,7 @@ TEST(Largest, AreThoseThatSortingFinds) {
         std::normal_distribution<float> exponent(0, spread);
         std::vector<float> score(3000);
         for (float& s : score) {
-            s = std::exp(exponent(generator));
+            s = std::exp(std::min(exponent(generator), 88.0f));
         }
         for (const std::size_t count : {0u, 1u, 7u, 128u, 2999u, 3000u, 9999u}) {
             EXPECT_EQ(find_largest(score, count), by_sorting(score, count)) << spread;

@@ -91,6 +91,12 @@ TEST(Zoom, ScalesTheDistanceWithinBounds) {
     EXPECT_NEAR(length(near.eye - near.target), 3e-5f, 2e-6f);
 }
 
+// There is no direction to go along.
+TEST(Zoom, OfAnEyeInItsTargetIsFinite) {
+    const Viewpoint moved = zoom({.eye = {1, 2, 3}, .target = {1, 2, 3}, .up = {0, 1, 0}}, 2);
+    EXPECT_TRUE(std::isfinite(length(moved.eye)));
+}
+
 TEST(BallPoint, ShorterSideSpansTheBall) {
     const BallPoint corner = ball_point(800, 0, 800, 400);
     EXPECT_DOUBLE_EQ(corner.x, 2);

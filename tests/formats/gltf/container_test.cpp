@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "tests/formats/gltf/asset_builder.h"
 
 namespace opaline::tests {
@@ -130,7 +132,7 @@ TEST(GltfContainer, UnsupportedRequiredExtensionIsAnError) {
 TEST(GltfContainer, MetresPerUnitScalesPositions) {
     const auto imported = must_import(triangle_asset(), {0.01});
     EXPECT_EQ(imported.scene.primitives.at(0).position[1], glm::vec3(0.01f, 0, 0));
-    for (const double bad : {0.0, -1.0, std::nan(""), 1.0 / 0.0}) {
+    for (const double bad : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
         const auto result = import_asset(triangle_asset(), {bad});
         ASSERT_FALSE(result.has_value());
         EXPECT_EQ(result.error().kind, ErrorKind::usage);

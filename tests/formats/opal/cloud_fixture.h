@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -26,7 +27,8 @@ inline void append_flux(const formats::LayerRecord& layer, std::mt19937& generat
     std::vector<float> t1, t_ms, r1, mean_t;
     for (std::uint32_t i = 0; i < layer.flux_depths; ++i) {
         const float share = static_cast<float>(i) / static_cast<float>(layer.flux_depths - 1);
-        const float depth = share / (1 - share);  // the last is infinite
+        const float depth =
+            share < 1 ? share / (1 - share) : std::numeric_limits<float>::infinity();
         mean_t.push_back(1 / (1 + depth / 5));
         for (std::uint32_t j = 0; j < layer.flux_cosines; ++j) {
             const float root = static_cast<float>(j) / static_cast<float>(layer.flux_cosines - 1);
