@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "formats/scene.h"
+#include "tests/properties/things.h"
+
+namespace opaline::tests {
+
+/// The scene that words stand for, and what a furnace shows of it.
+struct BuiltScene {
+    formats::Scene scene;
+    /// Of each primitive: what its vertices show of an even light of radiance 1 where nothing
+    /// absorbs, below what its boundary mirrors along the normal, which rows leave out. 0: unknown.
+    std::vector<double> shown;
+    /// Of each vertex of each primitive: no other thing is in front of it or around it, nor touches
+    /// it, so that it is seen.
+    std::vector<std::vector<bool>> exposed;
+    bool is_furnace = false;  ///< nothing absorbs
+};
+
+BuiltScene build_scene(const SceneWords& words);
+
+}  // namespace opaline::tests

@@ -1,0 +1,98 @@
+#include "tests/properties/things.h"
+
+#include <array>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+namespace opaline::tests {
+namespace {
+
+constexpr std::array<std::string_view, 13> kKinds{
+    "opaque", "metal", "coat",   "double_sided", "pane", "sheet", "medium",
+    "clear",  "core",  "volume", "glow",         "lamp", "bulb"};
+constexpr std::array<std::string_view, 7> kShapes{"box", "ball",  "quad",    "plate",
+                                                  "cup", "shell", "triangle"};
+constexpr std::array<std::string_view, 7> kFlaws{"whole", "slivers", "twice",     "no_area",
+                                                 "flap",  "open",    "inside_out"};
+constexpr std::array<std::string_view, 7> kPlaces{"apart",   "face", "edge",  "corner",
+                                                  "overlap", "same", "inside"};
+
+template <class Enum, std::size_t N>
+Enum read_word(std::istream& in, const std::array<std::string_view, N>& words) {
+    std::string word;
+    in >> word;
+    for (std::size_t i = 0; i < N; ++i) {
+        if (words[i] == word) return static_cast<Enum>(i);
+    }
+    throw std::invalid_argument("'" + word + "' is no word of a scene");
+}
+
+}  // namespace
+
+std::string describe(const SceneWords& scene) {
+    std::ostringstream out;
+    out.precision(10);
+    out << scene.scale << ' ' << scene.distance << ' ' << scene.turned;
+    for (const Thing& t : scene.things) {
+        out << "; " << kKinds[static_cast<std::size_t>(t.kind)] << ' '
+            << kShapes[static_cast<std::size_t>(t.shape)] << ' '
+            << kFlaws[static_cast<std::size_t>(t.flaw)] << ' '
+            << kPlaces[static_cast<std::size_t>(t.place)] << ' ' << t.side << ' ' << t.mirrored
+            << ' ' << t.size << ' ' << t.albedo << ' ' << t.depth << ' ' << t.g << ' ' << t.eta
+            << ' ' << t.roughness;
+    }
+    return out.str();
+}
+
+SceneWords parse_scene(const std::string& text) {
+    std::istringstream in(text);
+    SceneWords scene;
+    in >> scene.scale >> scene.distance >> scene.turned;
+    for (char semicolon = 0; in >> semicolon;) {
+        Thing t;
+        t.kind = read_word<Kind>(in, kKinds);
+        t.shape = read_word<Shape>(in, kShapes);
+        t.flaw = read_word<Flaw>(in, kFlaws);
+        t.place = read_word<Place>(in, kPlaces);
+        in >> t.side >> t.mirrored >> t.size >> t.albedo >> t.depth >> t.g >> t.eta >> t.roughness;
+        if (!in) throw std::invalid_argument("a thing has too few numbers: " + text);
+        scene.things.push_back(t);
+    }
+    if (scene.things.empty()) throw std::invalid_argument("a scene of nothing: " + text);
+    return scene;
+}
+
+bool absorbs(const Thing& thing) {
+    const bool is_solid = thing.shape == Shape::box || thing.shape == Shape::ball ||
+                          thing.shape == Shape::plate || thing.shape == Shape::cup ||
+                          thing.shape == Shape::shell;
+    switch (thing.kind) {
+        case Kind::opaque:
+        case Kind::metal:
+        case Kind::coat:
+            // Backs are black.
+            if (!is_solid || thing.flaw == Flaw::open || thing.flaw == Flaw::inside_out ||
+                thing.flaw == Flaw::flap)
+                return true;
+            break;
+        case Kind::medium:
+        case Kind::clear:
+        case Kind::core:
+            if (!is_solid || thing.flaw == Flaw::open || thing.flaw == Flaw::flap) return true;
+            break;
+        case Kind::lamp:
+        case Kind::glow:
+            return false;  // in balance with light of radiance 1
+        case Kind::bulb:
+            return true;
+        case Kind::double_sided:
+        case Kind::pane:
+        case Kind::sheet:
+        case Kind::volume:
+            break;
+    }
+    return thing.albedo < 1;
+}
+
+}  // namespace opaline::tests
