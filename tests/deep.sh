@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # What CI leaves out: benchmarks and every header compiled by itself; all tests of the g++ release build; the whole suite
 # under the address and undefined-behaviour sanitizers; what uses several threads under the thread sanitizer; glTF files in
-# other programs, where there is npm. Ends with a summary. Hours on 2 cores. Parts can be named: deep.sh [release] [viewers]
-# [asan] [tsan]; viewers needs the build of release.
+# other programs, where there is npm; fast tests with floating-point traps. Ends with a summary. Hours on 2 cores. Parts can be
+# named: deep.sh [release] [viewers] [traps] [asan] [tsan]; viewers needs the build of release.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 parts=("$@")
-[ $# -gt 0 ] || parts=(release viewers asan tsan)
+[ $# -gt 0 ] || parts=(release viewers traps asan tsan)
 
 # run_suite PRESET CTEST-ARGUMENTS...: builds and tests; leaves build-PRESET/test-results.xml.
 run_suite() {
@@ -17,6 +17,13 @@ run_suite() {
         cmake --build --preset "$preset" &&
         ctest --preset "$preset" -j "$(nproc)" --timeout 7200 --no-tests=error \
             --output-junit "$root/build-$preset/test-results.xml" --test-output-size-passed 1000000 "$@"
+}
+
+# Fast tests, where 0/0, division by zero and overflow in our code are failures (tests/support/float_traps.cpp).
+run_traps() {
+    cmake --preset traps >/dev/null && cmake --build --preset traps --target fast_tests &&
+        ctest --preset traps -j "$(nproc)" --timeout 7200 --no-tests=error -LE 'slow|long|build|source' -E '^Abi' \
+            --output-junit "$root/build-traps/test-results.xml" --test-output-size-passed 1000000
 }
 
 # Whole bakes with several threads, the loops of all stages, and the runtime called from many threads.
@@ -33,9 +40,10 @@ for part in "${parts[@]}"; do
     case $part in
         release) run_suite release || failed=1 ;;
         viewers) bash tests/gltf_viewers.sh build-release || [ $? -eq 77 ] || failed=1 ;;
+        traps) run_traps || failed=1 ;;
         asan) run_suite asan -LE build || failed=1 ;;  # compiling headers by themselves finds nothing more there
         tsan) run_threads || failed=1 ;;
-        *) echo "usage: deep.sh [release] [viewers] [asan] [tsan]" >&2; exit 2 ;;
+        *) echo "usage: deep.sh [release] [viewers] [traps] [asan] [tsan]" >&2; exit 2 ;;
     esac
 done
 for part in "${parts[@]}"; do
