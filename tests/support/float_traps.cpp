@@ -9,6 +9,8 @@
 // Embree, TBB, OpenEXR, OpenVDB, the GL driver and what that compiles at run time lie elsewhere.
 // Comparisons do not count: it is by them that code finds a NaN that a file brought.
 
+#include "tests/support/float_traps.h"
+
 #include <dlfcn.h>
 #include <execinfo.h>
 #include <gtest/gtest.h>
@@ -24,11 +26,10 @@
 #include <atomic>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 #include <string_view>
-
-#include "tests/support/float_traps.h"
 
 namespace {
 
@@ -211,6 +212,12 @@ const bool is_armed = [] {
     sigaction(SIGTRAP, &action, nullptr);
     testing::UnitTest::GetInstance()->listeners().Append(new TrapListener);
     _mm_setcsr(_mm_getcsr() & ~(kTrapped | _MM_EXCEPT_MASK));
+    const volatile float zero = 0;
+    [[maybe_unused]] const volatile float infinite = 1 / zero;
+    if (trap_count != 1) {
+        std::fputs("floating-point operations are not trapped\n", stderr);
+        std::abort();
+    }
     return true;
 }();
 
