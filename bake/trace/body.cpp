@@ -71,18 +71,20 @@ InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float
     InwardPath path;
     if (point.normal == glm::vec3(0)) return path;
     path = follow(rays, point, -point.normal, limit);
-    // A ray that aims exactly at a vertex on the far side, as in symmetric meshes, may slip between
-    // its triangles. A slightly tilted ray hits them, or confirms a hole.
+    if (!path.open && shells_at(path, 0) == 1) return path;
+    // A ray that aims exactly at a vertex or an edge, as in symmetric meshes and along the planes
+    // of walls, may slip between triangles: it misses an exit, or counts a shell too many around
+    // its start. Slightly tilted rays, along no axis, hit them, or confirm a hole or a shell.
     const glm::vec3 n = point.normal;
     const glm::vec3 aside =
         std::abs(n.x) < 0.5f ? glm::vec3(0, -n.z, n.y) : glm::vec3(-n.z, 0, n.x);
-    constexpr float kTilt = 1e-3f;
-    for (const float tilt : {kTilt, -kTilt}) {
-        if (path.open) {
-            path = follow(rays, point, glm::normalize(tilt * aside - n), limit);
-        }
-    }
-    return path;
+    const glm::vec3 tilt = 1e-3f * (0.8f * aside + 0.6f * glm::cross(n, aside));
+    const InwardPath one = follow(rays, point, glm::normalize(tilt - n), limit);
+    if (path.open && !one.open) return one;
+    InwardPath other = follow(rays, point, glm::normalize(-tilt - n), limit);
+    if (path.open) return other;
+    const bool is_outvoted = !other.open && shells_at(one, 0) == shells_at(other, 0);
+    return is_outvoted ? other : path;
 }
 
 std::int32_t shells_at(const InwardPath& path, float depth) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -106,6 +107,59 @@ bool is_at(const Thing& thing, glm::dvec3 point) {
             break;
     }
     return most < 1 + kNear;
+}
+
+bool is_body(const Thing& thing) {
+    return thing.kind == Kind::medium || thing.kind == Kind::clear || thing.kind == Kind::core;
+}
+
+// The index of what is around a lamp; nothing: there is more than one.
+std::optional<double> index_around(const std::vector<Thing>& things,
+                                   const std::vector<glm::dvec3>& at, std::size_t lamp) {
+    double index = 1;
+    bool is_outside = false, is_inside = false;
+    const formats::Primitive mesh = make_mesh(things[lamp].shape);
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        if (!is_body(things[i])) continue;
+        for (const glm::vec3 p : mesh.position) {
+            const glm::dvec3 point = at[lamp] + things[lamp].size * glm::dvec3(p);
+            const bool is_in = is_at(things[i], (point - at[i]) / things[i].size);
+            (is_in ? is_inside : is_outside) = true;
+            // Bodies smaller than the lamp may reach into it without a vertex of it in them.
+            const glm::dvec3 apart = glm::abs(at[i] - at[lamp]);
+            const double reach = things[i].size + things[lamp].size;
+            if (!is_in && std::max({apart.x, apart.y, apart.z}) < 1.01 * reach &&
+                things[i].size < things[lamp].size)
+                is_inside = true;
+        }
+        if (is_inside && index != 1) return std::nullopt;
+        if (is_inside) index = things[i].kind == Kind::core ? 0 : things[i].eta;
+        if (is_inside && is_outside && index != 1) return std::nullopt;
+        is_inside = is_outside = false;
+    }
+    if (index == 0 || (index != 1 && things[lamp].kind == Kind::glow)) return std::nullopt;
+    return index;
+}
+
+// Limits that are stated (bake/effects/transmission, bake/effects/multiple/walks): light that
+// crosses a body straight ends where another body begins, and all light in a body at what is no
+// body.
+bool loses_light_inside(const std::vector<Thing>& things, const std::vector<glm::dvec3>& at) {
+    constexpr double kNear = 0.02, kDense = 3;
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        for (std::size_t j = 0; j < things.size() && is_body(things[i]); ++j) {
+            if (j == i || things[j].kind == Kind::lamp || things[j].kind == Kind::volume ||
+                things[j].kind == Kind::glow)
+                continue;
+            const bool is_dense = things[i].kind == Kind::medium && things[i].depth > kDense;
+            if (is_body(things[j]) && is_dense) continue;
+            const double near = (is_body(things[j]) ? kNear : -kNear) * things[i].size;
+            const glm::dvec3 gap =
+                glm::abs(at[i] - at[j]) - half_extent(things[i]) - half_extent(things[j]);
+            if (std::max({gap.x, gap.y, gap.z}) < near) return true;
+        }
+    }
+    return false;
 }
 
 formats::Medium make_medium(const Thing& thing, double length) {
@@ -233,7 +287,16 @@ BuiltScene build_scene(const SceneWords& words) {
     formats::Scene& scene = built.scene;
     scene.source = "words";
     scene.origin = glm::dvec3(words.distance, -0.3 * words.distance, 0.7 * words.distance);
-    built.is_furnace = std::ranges::none_of(things, absorbs);
+    std::vector<double> emission(things.size(), 1);
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        if (things[i].kind == Kind::bulb) built.in_balance = false;
+        if (things[i].kind != Kind::lamp && things[i].kind != Kind::glow) continue;
+        const std::optional<double> index = index_around(things, at, i);
+        built.in_balance = built.in_balance && index.has_value();
+        emission[i] = index.value_or(1) * index.value_or(1);
+    }
+    built.is_furnace = built.in_balance && std::ranges::none_of(things, absorbs) &&
+                       !loses_light_inside(things, at);
     const auto add = [&](std::size_t number, formats::Primitive mesh, double size,
                          Material material) {
         const Thing& thing = things[number];
@@ -259,6 +322,8 @@ BuiltScene build_scene(const SceneWords& words) {
         mesh.node = static_cast<std::uint32_t>(number);
         mesh.name = "thing " + std::to_string(number);
         mesh.material = static_cast<std::uint32_t>(scene.materials.size());
+        const auto own = static_cast<float>(emission[number]);
+        material.emission = own * material.emission;
         material.name = "material " + std::to_string(scene.materials.size());
         built.shown.push_back(share_below_boundary(thing, material));
         built.exposed.push_back(std::move(exposed));

@@ -17,7 +17,11 @@ struct BuiltScene {
     /// Of each vertex of each primitive: no other thing is in front of it or around it, nor touches
     /// it, so that it is seen.
     std::vector<std::vector<bool>> exposed;
-    bool is_furnace = false;  ///< nothing absorbs
+    /// Lamps are in balance with light of radiance 1: they neither make anything brighter nor
+    /// darker. Not points; nor what stands in two media at once, since within a medium a lamp sends
+    /// out what leaves it as L / eta^2.
+    bool in_balance = true;
+    bool is_furnace = false;  ///< nothing absorbs, and lamps are in balance
 };
 
 BuiltScene build_scene(const SceneWords& words);

@@ -236,10 +236,7 @@ std::optional<Fault> find_fault(const SceneWords& words) {
     const auto see = [&](const runtime::LightVector& light, double background, bool lamps) {
         return show(*baked, built.scene, light, background, lamps);
     };
-    // Points do not have a radiance.
-    const bool has_bulb =
-        std::ranges::any_of(words.things, [](const Thing& t) { return t.kind == Kind::bulb; });
-    const bool in_balance = !has_bulb;
+    const bool in_balance = built.in_balance;
     const double stated = stated_of(*baked);
     const auto white = sky_of([](std::size_t) { return 1.0f; });
     const auto black = sky_of([](std::size_t) { return 0.0f; });

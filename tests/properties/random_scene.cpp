@@ -95,8 +95,8 @@ SceneWords random_scene(std::uint64_t seed) {
     Chance chance(seed);
     SceneWords scene;
     const bool lossless = chance.one_in(2);
-    // Few things: what goes wrong does so between two or three.
-    const int count = chance.one_in(6) ? 4 + chance.below(9) : 1 + chance.below(3);
+    // Few things: what goes wrong does so between two.
+    const int count = chance.one_in(10) ? 3 + chance.below(10) : 1 + chance.below(2);
     for (int i = 0; i < count; ++i) {
         scene.things.push_back(random_thing(lossless, chance));
     }

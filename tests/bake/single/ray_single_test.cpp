@@ -6,6 +6,7 @@
 #include "tests/bake/single/grey_medium.h"
 #include "tests/bake/single/single_support.h"
 #include "tests/support/reference_table.h"
+#include "tests/support/touching_bodies.h"
 
 namespace opaline::bake {
 namespace {
@@ -149,6 +150,16 @@ TEST(RaySingle, AShellOfTheSameMediumInsideIsNotABoundary) {
     const auto path = trace_inward_path(nested.rays, nested.points[0], 100);
     EXPECT_TRUE(path.nested);
     EXPECT_NEAR(path.length, 2, 0.01);
+}
+
+// Inward normals of some vertices of the outer faces run along the inner walls, where a ray meets
+// one wall of two. Such a cup of glass was black there.
+TEST(RaySingle, JustInsideACupOneShellIsAroundEveryVertex) {
+    const auto cup = set_up(make_translucent_scene({tests::make_cup()}, make_grey_medium(0, 0.1f)));
+    for (const BodyPoint& point : cup.points) {
+        EXPECT_EQ(shells_at(trace_inward_path(cup.rays, point, 100), 0), 1)
+            << point.position.x << ' ' << point.position.y << ' ' << point.position.z;
+    }
 }
 
 TEST(RaySingle, HolesAreCountedAndDark) {
