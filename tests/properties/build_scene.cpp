@@ -85,7 +85,8 @@ std::vector<Thing> with_sizes(std::vector<Thing> things) {
 
 // Whether a point, in cubes about the thing's centre, is in it or within a fiftieth of it.
 bool is_at(const Thing& thing, glm::dvec3 point) {
-    if (thing.kind == Kind::volume || thing.kind == Kind::glow || thing.kind == Kind::bulb)
+    if (thing.kind == ThingKind::volume || thing.kind == ThingKind::glow ||
+        thing.kind == ThingKind::bulb)
         return false;
     constexpr double kNear = 0.02;
     const double most = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
@@ -110,7 +111,8 @@ bool is_at(const Thing& thing, glm::dvec3 point) {
 }
 
 bool is_body(const Thing& thing) {
-    return thing.kind == Kind::medium || thing.kind == Kind::clear || thing.kind == Kind::core;
+    return thing.kind == ThingKind::medium || thing.kind == ThingKind::clear ||
+           thing.kind == ThingKind::core;
 }
 
 // The index of what is around a lamp; nothing: there is more than one.
@@ -133,11 +135,11 @@ std::optional<double> index_around(const std::vector<Thing>& things,
                 is_inside = true;
         }
         if (is_inside && index != 1) return std::nullopt;
-        if (is_inside) index = things[i].kind == Kind::core ? 0 : things[i].eta;
+        if (is_inside) index = things[i].kind == ThingKind::core ? 0 : things[i].eta;
         if (is_inside && is_outside && index != 1) return std::nullopt;
         is_inside = is_outside = false;
     }
-    if (index == 0 || (index != 1 && things[lamp].kind == Kind::glow)) return std::nullopt;
+    if (index == 0 || (index != 1 && things[lamp].kind == ThingKind::glow)) return std::nullopt;
     return index;
 }
 
@@ -148,10 +150,10 @@ bool loses_light_inside(const std::vector<Thing>& things, const std::vector<glm:
     constexpr double kNear = 0.02, kDense = 3;
     for (std::size_t i = 0; i < things.size(); ++i) {
         for (std::size_t j = 0; j < things.size() && is_body(things[i]); ++j) {
-            if (j == i || things[j].kind == Kind::lamp || things[j].kind == Kind::volume ||
-                things[j].kind == Kind::glow)
+            if (j == i || things[j].kind == ThingKind::lamp ||
+                things[j].kind == ThingKind::volume || things[j].kind == ThingKind::glow)
                 continue;
-            const bool is_dense = things[i].kind == Kind::medium && things[i].depth > kDense;
+            const bool is_dense = things[i].kind == ThingKind::medium && things[i].depth > kDense;
             if (is_body(things[j]) && is_dense) continue;
             const double near = (is_body(things[j]) ? kNear : -kNear) * things[i].size;
             const glm::dvec3 gap =
@@ -164,7 +166,7 @@ bool loses_light_inside(const std::vector<Thing>& things, const std::vector<glm:
 
 formats::Medium make_medium(const Thing& thing, double length) {
     const double sigma = std::min(1e12, thing.depth / length);
-    const double scattered = thing.kind == Kind::clear ? 0 : sigma * thing.albedo;
+    const double scattered = thing.kind == ThingKind::clear ? 0 : sigma * thing.albedo;
     // Nothing scatters, nothing absorbs: as clear as a file can say (formats/gltf/README.md).
     const double absorbed =
         thing.albedo == 1 ? (scattered > 0 ? 0 : 1e-15) : sigma * (1 - thing.albedo);
@@ -183,18 +185,18 @@ Material make_material(const Thing& thing, double length) {
     material.base_color = grey(thing.albedo);
     const auto roughness = static_cast<float>(thing.roughness);
     switch (thing.kind) {
-        case Kind::metal:
+        case ThingKind::metal:
             material.gloss = {.metallic = 1, .roughness = roughness};
             break;
-        case Kind::coat:
+        case ThingKind::coat:
             material.gloss = {.roughness = roughness,
                               .specular = 1,
                               .ior = static_cast<float>(std::max(1.0, thing.eta))};
             break;
-        case Kind::double_sided:
+        case ThingKind::double_sided:
             material.double_sided = true;
             break;
-        case Kind::pane:  // as the importer makes it
+        case ThingKind::pane:  // as the importer makes it
             material.double_sided = true;
             material.gloss = {.roughness = roughness, .specular = 1, .ior = 0};
             material.sheet = formats::Sheet{.reflect = {0, 0, 0},
@@ -202,25 +204,25 @@ Material make_material(const Thing& thing, double length) {
                                             .clear = 1,
                                             .eta = static_cast<float>(std::max(1.0, thing.eta))};
             break;
-        case Kind::sheet:
+        case ThingKind::sheet:
             material.double_sided = true;
             material.sheet = formats::Sheet{.reflect = grey(0.6), .transmit = grey(0.4)};
             break;
-        case Kind::medium:
-        case Kind::clear:
-        case Kind::core:
+        case ThingKind::medium:
+        case ThingKind::clear:
+        case ThingKind::core:
             material.base_color = {1, 1, 1};
             material.medium = make_medium(thing, length);
             break;
-        case Kind::lamp:
+        case ThingKind::lamp:
             material.base_color = {0, 0, 0};
             material.emission = {1, 1, 1};
             material.double_sided = thing.shape == Shape::quad || thing.shape == Shape::triangle;
             break;
-        case Kind::opaque:
-        case Kind::volume:
-        case Kind::glow:
-        case Kind::bulb:
+        case ThingKind::opaque:
+        case ThingKind::volume:
+        case ThingKind::glow:
+        case ThingKind::bulb:
             break;
     }
     return material;
@@ -228,29 +230,29 @@ Material make_material(const Thing& thing, double length) {
 
 double share_below_boundary(const Thing& thing, const Material& material) {
     switch (thing.kind) {
-        case Kind::metal:
-        case Kind::pane:
+        case ThingKind::metal:
+        case ThingKind::pane:
             return 0;
-        case Kind::coat:
+        case ThingKind::coat:
             return static_cast<double>(
                 formats::eval_gloss_albedo(
                     formats::make_gloss_surface(bake::make_lobe_record(material.gloss), {1, 1, 1},
                                                 0, material.gloss.roughness),
                     1)
                     .diffuse);
-        case Kind::medium:
-        case Kind::clear:
-        case Kind::core: {
+        case ThingKind::medium:
+        case ThingKind::clear:
+        case ThingKind::core: {
             const double root = (thing.eta - 1) / (thing.eta + 1);
             return 1 - root * root;
         }
-        case Kind::opaque:
-        case Kind::double_sided:
-        case Kind::sheet:
-        case Kind::volume:
-        case Kind::glow:
-        case Kind::lamp:
-        case Kind::bulb:
+        case ThingKind::opaque:
+        case ThingKind::double_sided:
+        case ThingKind::sheet:
+        case ThingKind::volume:
+        case ThingKind::glow:
+        case ThingKind::lamp:
+        case ThingKind::bulb:
             break;
     }
     return 1;
@@ -273,7 +275,7 @@ formats::Volume make_volume_of(const Thing& thing, double length, const glm::dma
         make_volume(std::move(grid), static_cast<float>(std::max(sigma, 1e-30)),
                     static_cast<float>(thing.albedo), static_cast<float>(thing.g));
     volume.density.to_scene = at * volume.density.to_scene;
-    if (thing.kind == Kind::glow) make_it_glow(volume, glm::vec3(1));
+    if (thing.kind == ThingKind::glow) make_it_glow(volume, glm::vec3(1));
     return volume;
 }
 
@@ -289,8 +291,8 @@ BuiltScene build_scene(const SceneWords& words) {
     scene.origin = glm::dvec3(words.distance, -0.3 * words.distance, 0.7 * words.distance);
     std::vector<double> emission(things.size(), 1);
     for (std::size_t i = 0; i < things.size(); ++i) {
-        if (things[i].kind == Kind::bulb) built.in_balance = false;
-        if (things[i].kind != Kind::lamp && things[i].kind != Kind::glow) continue;
+        if (things[i].kind == ThingKind::bulb) built.in_balance = false;
+        if (things[i].kind != ThingKind::lamp && things[i].kind != ThingKind::glow) continue;
         const std::optional<double> index = index_around(things, at, i);
         built.in_balance = built.in_balance && index.has_value();
         emission[i] = index.value_or(1) * index.value_or(1);
@@ -333,12 +335,12 @@ BuiltScene build_scene(const SceneWords& words) {
     for (std::size_t i = 0; i < things.size(); ++i) {
         const Thing& thing = things[i];
         const double length = thing.size * words.scale;
-        if (thing.kind == Kind::bulb) {
+        if (thing.kind == ThingKind::bulb) {
             const auto power = static_cast<float>(length * length);
             scene.lights.push_back({.name = "bulb " + std::to_string(i),
                                     .intensity = {power, power, power},
                                     .position = glm::vec3(words.scale * (turn * at[i]))});
-        } else if (thing.kind == Kind::volume || thing.kind == Kind::glow) {
+        } else if (thing.kind == ThingKind::volume || thing.kind == ThingKind::glow) {
             if (scene.volumes.size() == formats::kMaxVolumes) continue;
             glm::dmat4 to_scene(length * turn);
             to_scene[3] = glm::dvec4(words.scale * (turn * at[i]), 1);
@@ -346,7 +348,7 @@ BuiltScene build_scene(const SceneWords& words) {
         } else {
             add(i, with_flaw(make_mesh(thing.shape), thing.flaw), thing.size,
                 make_material(thing, length));
-            if (thing.kind == Kind::core) {
+            if (thing.kind == ThingKind::core) {
                 Thing inner = thing;
                 inner.depth = 20;
                 inner.eta = 1.5;

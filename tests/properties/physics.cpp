@@ -223,7 +223,7 @@ std::optional<Fault> find_dark_or_bright(const BuiltScene& built, const Shown& s
 
 bool has_lamps(const SceneWords& words) {
     return std::ranges::any_of(words.things, [](const Thing& t) {
-        return t.kind == Kind::lamp || t.kind == Kind::glow || t.kind == Kind::bulb;
+        return t.kind == ThingKind::lamp || t.kind == ThingKind::glow || t.kind == ThingKind::bulb;
     });
 }
 

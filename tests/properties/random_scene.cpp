@@ -33,28 +33,28 @@ class Chance {
     std::mt19937_64 engine_;
 };
 
-Shape draw_shape(Kind kind, bool lossless, Chance& chance) {
+Shape draw_shape(ThingKind kind, bool lossless, Chance& chance) {
     switch (kind) {
-        case Kind::opaque:
-        case Kind::metal:
-        case Kind::coat:
-        case Kind::lamp:
+        case ThingKind::opaque:
+        case ThingKind::metal:
+        case ThingKind::coat:
+        case ThingKind::lamp:
             if (!lossless && chance.one_in(3)) return chance.one_of({Shape::quad, Shape::triangle});
             return chance.one_of({Shape::box, Shape::ball, Shape::plate});
-        case Kind::double_sided:
-        case Kind::pane:
-        case Kind::sheet:
+        case ThingKind::double_sided:
+        case ThingKind::pane:
+        case ThingKind::sheet:
             return chance.one_of({Shape::quad, Shape::quad, Shape::box, Shape::ball, Shape::plate,
                                   Shape::cup, Shape::triangle});
-        case Kind::medium:
-        case Kind::clear:
+        case ThingKind::medium:
+        case ThingKind::clear:
             if (!lossless && chance.one_in(8)) return chance.one_of({Shape::quad, Shape::triangle});
             return chance.one_of(
                 {Shape::box, Shape::box, Shape::ball, Shape::plate, Shape::cup, Shape::shell});
-        case Kind::core:
-        case Kind::volume:
-        case Kind::glow:
-        case Kind::bulb:
+        case ThingKind::core:
+        case ThingKind::volume:
+        case ThingKind::glow:
+        case ThingKind::bulb:
             break;
     }
     return chance.one_of({Shape::box, Shape::ball});
@@ -64,9 +64,10 @@ Thing random_thing(bool lossless, Chance& chance) {
     Thing t;
     do {
         t = {};
-        t.kind = static_cast<Kind>(chance.below(static_cast<int>(Kind::bulb) + 1));
+        t.kind = static_cast<ThingKind>(chance.below(static_cast<int>(ThingKind::bulb) + 1));
         // What bodies do to each other goes wrong more often.
-        if (chance.one_in(3)) t.kind = chance.one_of({Kind::medium, Kind::medium, Kind::clear});
+        if (chance.one_in(3))
+            t.kind = chance.one_of({ThingKind::medium, ThingKind::medium, ThingKind::clear});
         t.shape = draw_shape(t.kind, lossless, chance);
         if (chance.one_in(4)) t.flaw = static_cast<Flaw>(chance.below(7));
         t.place = static_cast<Place>(chance.below(7));
@@ -77,11 +78,11 @@ Thing random_thing(bool lossless, Chance& chance) {
         t.depth = chance.log_even(0.01, 100);
         if (chance.one_in(6)) t.depth = chance.log_even(1e-9, 1e9);
         // Walks through deep white volumes take minutes.
-        if (t.kind == Kind::volume || t.kind == Kind::glow) {
+        if (t.kind == ThingKind::volume || t.kind == ThingKind::glow) {
             if (t.depth > 30) t.albedo = lossless ? 1 : chance.one_of({0.0, 0.5});
             if (t.depth > 30 && t.albedo == 1) t.depth = 30;
         }
-        if (t.kind == Kind::glow) t.albedo = 0.5;
+        if (t.kind == ThingKind::glow) t.albedo = 0.5;
         t.g = chance.one_of({0.0, 0.0, 0.3, 0.9, -0.5, 0.99, -0.99});
         t.eta = chance.one_of({1.0, 1.0, 1.3, 1.3, 1.5, 1.5, 2.4, 3.0, 0.6667, 0.3334});
         t.roughness = chance.one_of({0.0, 0.05, 0.3, 0.7, 1.0});

@@ -74,9 +74,9 @@ bool make_plain(SceneWords& scene, const Fails& fails) {
         any |= simplify<double>(
             scene, fails, [](Words& s, std::size_t t) -> double& { return s.things[t].roughness; },
             i, plain.roughness);
-        any |= simplify<Kind>(
-            scene, fails, [](Words& s, std::size_t t) -> Kind& { return s.things[t].kind; }, i,
-            Kind::opaque);
+        any |= simplify<ThingKind>(
+            scene, fails, [](Words& s, std::size_t t) -> ThingKind& { return s.things[t].kind; }, i,
+            ThingKind::opaque);
     }
     return any;
 }

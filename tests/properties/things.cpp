@@ -51,7 +51,7 @@ SceneWords parse_scene(const std::string& text) {
     in >> scene.scale >> scene.distance >> scene.turned;
     for (char semicolon = 0; in >> semicolon;) {
         Thing t;
-        t.kind = read_word<Kind>(in, kKinds);
+        t.kind = read_word<ThingKind>(in, kKinds);
         t.shape = read_word<Shape>(in, kShapes);
         t.flaw = read_word<Flaw>(in, kFlaws);
         t.place = read_word<Place>(in, kPlaces);
@@ -68,28 +68,28 @@ bool absorbs(const Thing& thing) {
                           thing.shape == Shape::plate || thing.shape == Shape::cup ||
                           thing.shape == Shape::shell;
     switch (thing.kind) {
-        case Kind::opaque:
-        case Kind::metal:
-        case Kind::coat:
+        case ThingKind::opaque:
+        case ThingKind::metal:
+        case ThingKind::coat:
             // Backs are black.
             if (!is_solid || thing.flaw == Flaw::open || thing.flaw == Flaw::inside_out ||
                 thing.flaw == Flaw::flap)
                 return true;
             break;
-        case Kind::medium:
-        case Kind::clear:
-        case Kind::core:
+        case ThingKind::medium:
+        case ThingKind::clear:
+        case ThingKind::core:
             if (!is_solid || thing.flaw == Flaw::open || thing.flaw == Flaw::flap) return true;
             break;
-        case Kind::lamp:
-        case Kind::glow:
+        case ThingKind::lamp:
+        case ThingKind::glow:
             return false;  // in balance with light of radiance 1
-        case Kind::bulb:
+        case ThingKind::bulb:
             return true;
-        case Kind::double_sided:
-        case Kind::pane:
-        case Kind::sheet:
-        case Kind::volume:
+        case ThingKind::double_sided:
+        case ThingKind::pane:
+        case ThingKind::sheet:
+        case ThingKind::volume:
             break;
     }
     return thing.albedo < 1;

@@ -6,7 +6,7 @@
 
 namespace opaline::tests {
 
-enum class Kind : std::uint8_t {
+enum class ThingKind : std::uint8_t {
     opaque,
     metal,
     coat,
@@ -37,7 +37,7 @@ enum class Place : std::uint8_t { apart, face, edge, corner, overlap, same, insi
 
 /// One thing in cubes of half edge `size`.
 struct Thing {
-    Kind kind = Kind::opaque;
+    ThingKind kind = ThingKind::opaque;
     Shape shape = Shape::box;
     Flaw flaw = Flaw::none;
     Place place = Place::apart;
