@@ -38,8 +38,9 @@ int run(const CompareCommand& options) {
     fmt::print("95th percentile {:.6g}\n", comparison.p95);
     fmt::print("maximum         {:.6g}\n", comparison.maximum);
     if (!is_within) {
-        fmt::print(stderr, "opaline: {} differs from {} by more than {:g}\n", printable(options.a),
-                   printable(options.b), options.max_relative);
+        print_to_stderr(fmt::format("opaline: {} differs from {} by more than {:g}\n",
+                                    printable(options.a), printable(options.b),
+                                    options.max_relative));
         return kExitNo;
     }
     return kExitSuccess;
@@ -51,8 +52,9 @@ void add_compare_command(Program& program) {
     auto [command, options] = add_command<CompareCommand>(
         program, "compare",
         "Say how far A is from the reference B: two images or two relight tables", run);
-    command.add("a", "A", text(options.a), "image (.exr, .hdr, .png) or table (.csv)").required();
-    command.add("b", "B", text(options.b), "the reference, of the same kind").required();
+    command.add("a", "A", file_name(options.a), "image (.exr, .hdr, .png) or table (.csv)")
+        .required();
+    command.add("b", "B", file_name(options.b), "the reference, of the same kind").required();
     command.add("--max-rel", "E", real_number(options.max_relative, 0, 1e30),
                 "exit with code 1 if the relative RMSE is larger");
     command.add_flag("--json", options.json, "print JSON");

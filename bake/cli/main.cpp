@@ -1,6 +1,9 @@
+#include <fcntl.h>
+
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <initializer_list>
 
 #include "bake/cli/program.h"
 #include "formats/vdb/answer_vdb_request.h"
@@ -17,12 +20,25 @@ int end_program(int code) {
     return code;
 }
 
+// Where a standard descriptor is closed, the next file that is opened would get its number, and
+// what is printed would stand in that file. What this opens in its place can neither be read nor
+// written, as before.
+void keep_standard_descriptors() {
+    for (const int descriptor : {0, 1, 2}) {
+        if (::fcntl(descriptor, F_GETFD) == -1) {
+            [[maybe_unused]] const int taken =
+                ::open("/dev/null", descriptor == 0 ? O_WRONLY : O_RDONLY);
+        }
+    }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     if (opaline::formats::is_vdb_request(argc, argv)) {
         opaline::formats::answer_vdb_request(argc, argv);
     }
+    keep_standard_descriptors();
     // A write past the limit of file sizes fails as one to a full disk does.
     std::signal(SIGXFSZ, SIG_IGN);
     return end_program(opaline::cli::run_program(argc, argv));

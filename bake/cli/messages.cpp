@@ -114,7 +114,7 @@ int exit_code_of(const formats::Error& error) {
 
 int report_error(const formats::Error& error) {
     for (const Diagnostic& diagnostic : error.diagnostics) {
-        fmt::print(stderr, "{}\n", format_diagnostic(diagnostic));
+        print_to_stderr(format_diagnostic(diagnostic) + "\n");
     }
     return exit_code_of(error);
 }
@@ -137,9 +137,13 @@ formats::Status report_warnings(const std::vector<Diagnostic>& warnings) {
     return formats::ok_status();
 }
 
+void print_to_stderr(const std::string& text) {
+    [[maybe_unused]] const std::size_t written = std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
 void print_note(const std::string& line) {
     if (!message_settings.quiet) {
-        fmt::print(stderr, "{}\n", line);
+        print_to_stderr(line + "\n");
     }
 }
 

@@ -59,6 +59,9 @@ inline void require(formats::Status status) {
 /// them as an error (bad_input); the caller must then write no output.
 formats::Status report_warnings(const std::vector<formats::Diagnostic>& warnings);
 
+/// Where it is closed or full nothing is printed: nobody could be told.
+void print_to_stderr(const std::string& text);
+
 /// Prints a line to stderr that is neither a warning nor an error, unless quiet.
 void print_note(const std::string& line);
 

@@ -64,6 +64,14 @@ void add_help_command(Program& program) {
     command.footer("Example:\n  opaline help bake");
 }
 
+// Buffered data may still not fit where it goes.
+int end_output(int code) {
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    print_to_stderr(
+        fmt::format("opaline: error: standard output: cannot write: {}\n", std::strerror(errno)));
+    return kExitResource;
+}
+
 int run_commands(int argc, const char* const* argv) {
     CLI::App app(
         "Opaline bakes how light travels through a scene, so that it can be relit in real time.");
@@ -105,9 +113,9 @@ int run_commands(int argc, const char* const* argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {
-        return app.exit(help);  // prints what --help or --version asked for
+        return end_output(app.exit(help));  // prints what --help or --version asked for
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "opaline: error: {}\n", describe_usage_error(app, error));
+        print_to_stderr("opaline: error: " + describe_usage_error(app, error) + "\n");
         return kExitUsage;
     }
     set_message_options(messages);
@@ -117,13 +125,7 @@ int run_commands(int argc, const char* const* argv) {
     } catch (const Refusal& refusal) {
         code = report_error(refusal.error);
     }
-    // Buffered data may still not fit where it goes.
-    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-        fmt::print(stderr, "opaline: error: standard output: cannot write: {}\n",
-                   std::strerror(errno));
-        return kExitResource;
-    }
-    return code;
+    return end_output(code);
 }
 
 }  // namespace
@@ -132,12 +134,13 @@ int run_program(int argc, const char* const* argv) {
     try {
         return run_commands(argc, argv);
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "opaline: error: out of memory (free some, or lower the knobs)\n");
+        print_to_stderr("opaline: error: out of memory (free some, or lower the knobs)\n");
     } catch (const std::system_error& error) {
-        fmt::print(stderr, "opaline: error: {}\n", printable(error.what()));
+        print_to_stderr(fmt::format("opaline: error: {}\n", printable(error.what())));
     } catch (const std::exception& error) {
-        fmt::print(stderr, "opaline: error: {} (this is a fault of Opaline: please report it)\n",
-                   printable(error.what()));
+        print_to_stderr(
+            fmt::format("opaline: error: {} (this is a fault of Opaline: please report it)\n",
+                        printable(error.what())));
     }
     return kExitResource;
 }

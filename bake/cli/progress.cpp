@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -42,12 +41,9 @@ void print_bar(const Bar& bar, const bake::Progress& progress) {
     const auto filled = static_cast<std::size_t>(share * kWidth);
     const std::string left =
         share > 0 && share < 1 ? format_seconds(seconds * (1 - share) / share) + " left" : "";
-    fmt::print(stderr, "\r{:<10} [{}{}] {:3.0f} % {:<16}", printable(bar.stage),
-               std::string(filled, '#'), std::string(kWidth - filled, '.'), share * 100, left);
-    if (progress.done == progress.total) {
-        fmt::print(stderr, "\n");
-    }
-    std::fflush(stderr);
+    print_to_stderr(fmt::format("\r{:<10} [{}{}] {:3.0f} % {:<16}{}", printable(bar.stage),
+                                std::string(filled, '#'), std::string(kWidth - filled, '.'),
+                                share * 100, left, progress.done == progress.total ? "\n" : ""));
 }
 
 std::string write_line(const Json& line) {
@@ -109,7 +105,7 @@ std::function<void(const bake::Progress&)> make_progress_printer(ProgressStyle s
         const auto print = [lines = std::make_shared<ProgressLines>(),
                             start = Clock::now()](const bake::Progress& progress) {
             const std::chrono::duration<double> now = Clock::now() - start;
-            fmt::print(stderr, "{}", lines->next(progress, now.count()));
+            print_to_stderr(lines->next(progress, now.count()));
         };
         print({job, 0, 1});
         return print;

@@ -45,10 +45,28 @@ TEST(BadOutput, DataThatStandardOutputCannotTakeIsAnError) {
     SmallScene small;
     for (const std::string& command :
          {"info '" + small.baked() + "'", "plan '" + small.scene() + "'",
-          std::string("example --list")}) {
+          std::string("example --list"), std::string("--help"), std::string("--version")}) {
         const Outcome outcome =
             run_any({"sh", "-c", OPALINE_PROGRAM " " + command + " >/dev/full"});
         EXPECT_EQ(outcome.exit_code, 4) << command << outcome.err;
+    }
+}
+
+// The next file that is opened takes the number of a descriptor that is closed: what is printed
+// would stand in it.
+TEST(BadOutput, MessagesThatNobodyCanReadStandInNoFileAndStopNoBake) {
+    SmallScene small;
+    run_well({"bake", small.scene(), "--quality", "draft", "-o", small.path("a.opal")});
+    const std::string sound = read_text(small.path("a.opal"));
+    for (const std::string streams : {"2>&-", ">&- 2>&-", "<&- >&- 2>&-", "2>/dev/full"}) {
+        const std::string out = small.path("b.opal");
+        const Outcome bake =
+            run_any({"sh", "-c",
+                     OPALINE_PROGRAM " bake '" + small.scene() +
+                         "' --quality draft --progress json -o '" + out + "' " + streams});
+        EXPECT_TRUE(bake.exit_code == 0 || bake.exit_code == 4) << streams << bake.exit_code;
+        EXPECT_EQ(read_text(out) == sound, bake.exit_code == 0) << streams;
+        std::filesystem::remove(out);
     }
 }
 
