@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bake/cli/interrupt.h"
+#include "bake/cli/machine_limits.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/physics/mie/mie_series.h"

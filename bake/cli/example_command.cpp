@@ -89,7 +89,7 @@ void add_example_command(Program& program) {
     auto [command, options] = add_command<ExampleCommand>(
         program, "example", "Write a bundled example scene or light; nothing is downloaded", run);
     command.add("name", "NAME", text(options.name), "a scene or a light of the list");
-    command.add("-o,--output", "DIR", text(options.folder),
+    command.add("-o,--output", "DIR", file_name(options.folder),
                 "folder to write to, created if absent; default: one named after the scene, the "
                 "current one for a light");
     command.add_flag("--list", options.list, "say what there is");

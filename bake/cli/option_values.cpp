@@ -1,30 +1,19 @@
 #include "bake/cli/option_values.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
-#include <tbb/global_control.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <condition_variable>
-#include <fstream>
 #include <limits>
-#include <mutex>
-#include <optional>
 #include <string_view>
 #include <system_error>
-#include <thread>
 #include <vector>
 
 #include "bake/cli/messages.h"
 
 namespace opaline::cli {
 namespace {
-
-using formats::ErrorKind;
-using formats::make_error;
 
 template <class T>
 std::optional<T> parse_whole(std::string_view text) {
@@ -68,6 +57,8 @@ OptionValue make_value(Parse parse, Put put, Describe describe) {
     }};
 }
 
+constexpr const char* kEmptyName = "the name is empty; give the path of a file";
+
 OptionValue make_text(std::string& to, const char* fault_of_none) {
     return {[&to, fault_of_none](const std::string& text) {
         to = text;
@@ -96,28 +87,6 @@ OptionValue make_length(double least, double most, detail::Put put) {
                 "unit: nm, um, mm, m)",
                 least * kMicrometresPerMetre, most * kMicrometresPerMetre);
         });
-}
-
-constexpr std::uint64_t kUnlimited = std::numeric_limits<std::uint64_t>::max();
-
-// The number in a file of one number; unlimited where there is none.
-std::uint64_t read_number(const char* path) {
-    std::ifstream file(path);
-    std::uint64_t value = 0;
-    return file >> value ? value : kUnlimited;
-}
-
-// What `ulimit -v` leaves beyond the address space already taken and what is only reserved: heaps
-// of the libraries, and a stack for each thread.
-std::uint64_t address_space_left(unsigned threads) {
-    constexpr std::uint64_t kHeaps = 64u << 20, kStack = 16u << 20;
-    rlimit limit{};
-    if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return kUnlimited;
-    const std::uint64_t pages = read_number("/proc/self/statm");  // its first number: all of them
-    const std::uint64_t used =
-        (pages == kUnlimited ? 0 : pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE))) +
-        kHeaps + kStack * threads;
-    return limit.rlim_cur > used ? limit.rlim_cur - used : 0;
 }
 
 }  // namespace
@@ -189,16 +158,24 @@ OptionValue text(std::string& to) {
     return make_text(to, "");
 }
 
-OptionValue texts(std::vector<std::string>& to, OptionValue::Count count) {
+OptionValue texts(std::vector<std::string>& to) {
     return {[&to](const std::string& value) {
                 to.push_back(value);
                 return std::string();
             },
-            count};
+            OptionValue::Count::repeated};
 }
 
 OptionValue file_name(std::string& to) {
-    return make_text(to, "the name is empty; give the path of a file");
+    return make_text(to, kEmptyName);
+}
+
+OptionValue file_names(std::vector<std::string>& to) {
+    return {[&to](const std::string& value) {
+                to.push_back(value);
+                return std::string(value.empty() ? kEmptyName : "");
+            },
+            OptionValue::Count::rest};
 }
 
 OptionValue term_list(std::string& to) {
@@ -215,72 +192,13 @@ Option add_seed_option(const Command& command, std::uint64_t& seed, const std::s
 }
 
 void add_asset_argument(const Command& command, std::string& path) {
-    command.add("file", "FILE.opal", text(path), "the .opal file").required();
+    command.add("file", "FILE.opal", file_name(path), "the .opal file").required();
 }
 
 void add_memory_option(const Command& command, std::uint64_t& limit) {
     command.add("--memory-limit", "BYTES",
                 whole_number(limit, 1, std::numeric_limits<std::int64_t>::max()),
                 "refuse what is predicted to need more; default: what the machine has");
-}
-
-std::uint64_t available_memory(unsigned threads) {
-    const std::uint64_t machine = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) *
-                                  static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-    return std::min({machine, read_number("/sys/fs/cgroup/memory.max"),
-                     read_number("/sys/fs/cgroup/memory/memory.limit_in_bytes"),
-                     address_space_left(threads)});
-}
-
-formats::Status check_memory(const std::string& file, const bake::MemoryPrediction& prediction,
-                             std::uint64_t limit) {
-    const auto most = static_cast<double>(limit);
-    if (prediction.bytes() <= most) return formats::ok_status();
-    const auto& largest = prediction.largest();
-    return make_error(
-        ErrorKind::resource, file, "",
-        fmt::format("the bake needs about {}, {} of it for {}, and may take {}",
-                    format_bytes(prediction.bytes()), format_bytes(largest.bytes), largest.name,
-                    format_bytes(most)),
-        "lower --quality or --coefficients, split the scene, or raise --memory-limit");
-}
-
-formats::Status check_threads(unsigned threads) {
-    const unsigned count =
-        threads != 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
-    std::mutex mutex;
-    std::condition_variable done;
-    bool is_done = false;
-    std::vector<std::thread> started;
-    std::string fault;
-    try {
-        while (started.size() + 1 < count) {
-            started.emplace_back([&] {
-                std::unique_lock lock(mutex);
-                done.wait(lock, [&] { return is_done; });
-            });
-        }
-    } catch (const std::system_error& error) {
-        fault = error.what();
-    }
-    {
-        const std::lock_guard lock(mutex);
-        is_done = true;
-    }
-    done.notify_all();
-    for (std::thread& thread : started) {
-        thread.join();
-    }
-    if (fault.empty()) {
-        // TBB warns on the standard error, at every stage, of more threads than cores.
-        static std::optional<tbb::global_control> allowed;
-        allowed.emplace(tbb::global_control::max_allowed_parallelism,
-                        std::max(count, std::thread::hardware_concurrency()));
-        return formats::ok_status();
-    }
-    return make_error(ErrorKind::resource, "", "--threads",
-                      fmt::format("{} threads cannot be started: {}", count, fault),
-                      "lower --threads, or raise the limits of memory and of processes");
 }
 
 }  // namespace opaline::cli

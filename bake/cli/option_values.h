@@ -11,25 +11,11 @@
 #include <vector>
 
 #include "bake/cli/command.h"
-#include "bake/pipeline/predict_memory.h"
-#include "formats/opal/result.h"
 
 namespace opaline::cli {
 
 /// `--memory-limit`; 0 where it is not given.
 void add_memory_option(const Command& command, std::uint64_t& limit);
-
-/// What this process may use [bytes]: the machine's memory, or what its control group allows, or
-/// what `ulimit -v` leaves to a program of that many threads.
-std::uint64_t available_memory(unsigned threads);
-
-/// Refuses what is predicted to need more than `limit`. Errors: resource, naming `file`.
-formats::Status check_memory(const std::string& file, const bake::MemoryPrediction& prediction,
-                             std::uint64_t limit);
-
-/// Whether that many threads (0: one per core) can be started. Asked first because TBB, which all
-/// stages run on, waits for ever for a thread that could not be. Errors: resource.
-formats::Status check_threads(unsigned threads);
 
 /// The whole text as a finite number; nothing where it is none.
 std::optional<double> parse_number(std::string_view text);
@@ -90,11 +76,12 @@ OptionValue real_numbers(std::vector<double>& to, double least, double most);
 
 OptionValue text(std::string& to);
 /// Of an option that may be given often.
-OptionValue texts(std::vector<std::string>& to,
-                  OptionValue::Count count = OptionValue::Count::repeated);
+OptionValue texts(std::vector<std::string>& to);
 
 /// The path of a file; not empty.
 OptionValue file_name(std::string& to);
+/// All arguments that follow.
+OptionValue file_names(std::vector<std::string>& to);
 
 /// Components of radiance: not empty, as nothing would stand for all of them.
 OptionValue term_list(std::string& to);

@@ -164,7 +164,7 @@ void add_phase_command(Program& program) {
     options.rms_angle_option = command.add(
         "--rms-angle", "A", real_number(options.phase.rms_angle, formats::media::kMinRmsAngle, 1),
         "root mean square angle of the gaussian, in radians, 0.001 to 1");
-    options.table_option = command.add("--table", "FILE", text(options.phase.table),
+    options.table_option = command.add("--table", "FILE", file_name(options.phase.table),
                                        "measured function: lines of a cosine and a value, cosines "
                                        "ascending from -1 to 1, values relative");
     add_droplet_options(command, options.phase.droplets, true);

@@ -9,6 +9,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/cli/inputs.h"
+#include "bake/cli/machine_limits.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/effects/effects.h"
@@ -122,7 +123,7 @@ OptionValue knob_value(const bake::KnobSpec& knob, bake::BakeOptions& options) {
 
 void add_scene_argument(const Command& command, SceneSource& source) {
     command
-        .add("scene", "SCENE", text(source.scene),
+        .add("scene", "SCENE", file_name(source.scene),
              "the scene: .gltf or .glb; .vdb for a volume alone; .json for the volumes of a media "
              "file alone")
         .required();

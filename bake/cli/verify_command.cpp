@@ -81,10 +81,7 @@ int run(const VerifyCommand& options) {
 void add_verify_command(Program& program) {
     auto [command, options] = add_command<VerifyCommand>(
         program, "verify", "Check .opal files: structure, checksums, ranges, finite numbers", run);
-    command
-        .add("file", "FILE.opal...", texts(options.paths, OptionValue::Count::rest),
-             "the .opal files")
-        .required();
+    command.add("file", "FILE.opal...", file_names(options.paths), "the .opal files").required();
     command.add_flag("--json", options.json, "print JSON: files[]{file,sound,errors[]}");
     command.footer(
         "Exit code 1: a file is damaged; 3: one is missing.\n"
