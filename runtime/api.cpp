@@ -253,7 +253,9 @@ opaline_status opaline_shade_range(const opaline_asset* asset, const opaline_lig
 opaline_status opaline_shade_from(const opaline_asset* asset, const opaline_light* light,
                                   uint32_t flags, const float eye[3], uint32_t first,
                                   uint32_t count, float* out_rgb, size_t out_count) {
-    if (asset == nullptr || light == nullptr || out_rgb == nullptr) return null_argument();
+    if (asset == nullptr || light == nullptr || (count > 0 && out_rgb == nullptr)) {
+        return null_argument();
+    }
     const runtime::Reading reading(light->users);
     if (!reading) return busy();
     const formats::AssetView& view = asset->loaded.view;
