@@ -3,6 +3,7 @@
 #include <xxhash.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cstring>
 #include <memory>
@@ -113,7 +114,7 @@ Result<std::vector<SectionEntry>> read_section_table(std::span<const std::byte> 
         return damaged("section table", "its checksum does not match");
     }
     std::vector<SectionEntry> table(header.section_count);
-    std::memcpy(table.data(), table_bytes.data(), table_bytes.size());
+    std::ranges::copy(table_bytes, std::as_writable_bytes(std::span(table)).begin());
     for (std::size_t i = 0; i < table.size(); ++i) {
         const SectionEntry& entry = table[i];
         const std::string where = "section " + section_name(entry.id);
