@@ -2,7 +2,8 @@
 # What CI leaves out: benchmarks and every header compiled by itself; all tests of the g++ release build; the whole suite
 # under the address and undefined-behaviour sanitizers; what uses several threads under the thread sanitizer; glTF files in
 # other programs, where there is npm; fast tests with floating-point traps. Ends with a summary. Hours on 2 cores. Parts can be
-# named: deep.sh [release] [viewers] [traps] [asan] [tsan]; viewers needs the build of release.
+# named: deep.sh [release] [viewers] [traps] [asan] [tsan] [fuzz]; viewers needs the build of release; fuzz, some five hours, is
+# left out unless it is named.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
@@ -38,12 +39,16 @@ bash .ci/setup.sh
 failed=0
 for part in "${parts[@]}"; do
     case $part in
-        release) run_suite release || failed=1 ;;
+        release)
+            run_suite release || failed=1
+            bash tests/faults.sh build-release/opaline || failed=1
+            ;;
+        fuzz) bash tests/fuzz.sh 1200 || failed=1 ;;  # 20 minutes a target
         viewers) bash tests/gltf_viewers.sh build-release || [ $? -eq 77 ] || failed=1 ;;
         traps) run_traps || failed=1 ;;
         asan) run_suite asan -LE build || failed=1 ;;  # compiling headers by themselves finds nothing more there
         tsan) run_threads || failed=1 ;;
-        *) echo "usage: deep.sh [release] [viewers] [traps] [asan] [tsan]" >&2; exit 2 ;;
+        *) echo "usage: deep.sh [release] [viewers] [traps] [asan] [tsan] [fuzz]" >&2; exit 2 ;;
     esac
 done
 for part in "${parts[@]}"; do

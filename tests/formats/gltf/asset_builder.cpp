@@ -187,6 +187,43 @@ std::string errors_of(const Result<ImportedScene>& result) {
     return result ? "" : lines(result.error().diagnostics);
 }
 
+AssetBuilder rich_asset() {
+    AssetBuilder asset = triangle_asset();
+    Json& primitive = asset.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["COLOR_0"] =
+        asset.add<std::uint8_t>({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}, "VEC4", true);
+    primitive["indices"] = asset.add<std::uint16_t>({0, 1, 2}, "SCALAR");
+    primitive["material"] = 0u;
+    asset.json["materials"] = Json::array(
+        {{{"name", "m"},
+          {"alphaMode", "MASK"},
+          {"alphaCutoff", 0.5},
+          {"emissiveFactor", {1, 1, 0}},
+          {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 2}}}}}}});
+    asset.json["extensions"]["KHR_lights_punctual"]["lights"] =
+        Json::array({{{"type", "spot"},
+                      {"intensity", 3},
+                      {"color", {1, 1, 1}},
+                      {"range", 9},
+                      {"spot", {{"innerConeAngle", 0.1}, {"outerConeAngle", 0.2}}}}});
+    asset.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"] = {
+        {"diffuseFactor", {1, 0.5, 0, 1}}, {"glossinessFactor", 0.5}};
+    primitive["attributes"]["JOINTS_0"] = asset.add<std::uint8_t>(Blob(12, 0), "VEC4");
+    primitive["attributes"]["WEIGHTS_0"] = asset.add<std::uint8_t>(Blob(12, 255), "VEC4", true);
+    primitive["targets"] =
+        Json::array({{{"POSITION", asset.add<std::int8_t>({0, 0, 1, 0, 0, 0, 0, 0, 0}, "VEC3")}}});
+    asset.json["meshes"][0]["weights"] = {1};
+    asset.json["skins"] = Json::array({{{"joints", {1u}}}});
+    asset.json["nodes"][0]["skin"] = 0u;
+    asset.json["nodes"].push_back({{"children", {0u}}, {"rotation", {0, 0, 0, 1}}});
+    asset.json["nodes"][1]["mesh"] = 0u;
+    asset.json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["TRANSLATION"] =
+        asset.add<float>({1, 2, 3}, "VEC3");
+    asset.json["nodes"][0]["extensions"]["KHR_lights_punctual"]["light"] = 0u;
+    asset.json["scenes"][0]["nodes"] = {1u};
+    return asset;
+}
+
 AssetBuilder asset_with_extensions(Json extensions) {
     AssetBuilder asset = triangle_asset();
     asset.json["meshes"][0]["primitives"][0]["material"] = 0u;

@@ -62,6 +62,9 @@ AssetBuilder triangle_asset();
 /// as large.
 AssetBuilder textured_triangle(Json material, float other = 1);
 
+/// Something of everything, still small: interleaving aside, every reader is entered.
+AssetBuilder rich_asset();
+
 std::string base64(const Blob& bytes);
 void write_file(const std::filesystem::path& path, const void* data, std::size_t size);
 void write_file(const std::filesystem::path& path, const std::string& text);

@@ -22,6 +22,23 @@ inline formats::Result<formats::MediaFile> read_text_as_media(const std::string&
     return formats::read_media(folder / "media.json");
 }
 
+/// Something of everything.
+inline const std::string kRichMedia = R"({"materials": {
+    "Body": {"preset": "marble", "phase": {"type": "gaussian", "rms_angle": 0.3},
+             "marble": {"scale": 0.1, "inside": true}},
+    "Wax": {"sigma_s_prime": [1, 2, 3], "sigma_a": [0.1, 0, 4e-2], "unit": "1/mm", "eta": 1.44,
+            "phase": {"type": "hg", "g": 0.3}, "roughness": 0.2, "base_color": [1, 0.5, 0],
+            "profile": "better", "fidelity": "paper"},
+    "Ear": {"preset": "skin1", "thickness": 1e-3},
+    "Leaf": {"thin_walled": {"reflect": [0.1, 0.2, 0.3], "transmit": [0.4, 0.5, 0.6]}},
+    "*": {"opaque": true}},
+    "clouds": [{"procedural": {"type": "waves", "scale": 900, "coverage": 0.5, "seed": 3,
+                               "resolution": 256,
+                               "evolution": {"period": 900, "frames": 8}}, "thickness": 120, "N0": 3e8, "r_e": 7e-6,
+                "gamma": 2, "substance": "ice", "base": 1000, "ground_height": 10,
+                "size": [9e3, 8000], "center": [1, 2], "wind": [3, 4], "repeat": true,
+                "visibility": 3e4, "forward_angle": 5, "ground_albedo": [0.1, 0.2, 0.3]}]})";
+
 /// {"materials": {"Wax": {ENTRY}}}
 inline std::string wax(const std::string& entry) {
     return R"({"materials": {"Wax": {)" + entry + "}}}";
