@@ -1,5 +1,3 @@
-#include <nlohmann/json.hpp>
-
 #include "tests/formats/media/cloud_text.h"
 #include "tests/formats/media/media_text.h"
 
@@ -7,7 +5,6 @@ namespace opaline::tests {
 namespace {
 
 using formats::ErrorKind;
-using Json = nlohmann::json;
 
 TEST(HostileMedia, EveryTruncatedPrefixIsRefused) {
     ASSERT_TRUE(read_text_as_media(kRichMedia).has_value())
