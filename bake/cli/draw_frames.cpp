@@ -23,13 +23,6 @@ namespace {
 using formats::ErrorKind;
 using formats::make_error;
 
-// Of a metered picture, with a note where it is not 0.
-float note_exposure(const runtime::Picture& metered) {
-    const float exposure = runtime::choose_exposure(metered);
-    if (exposure != 0) print_note(fmt::format("exposure {:+.2f} EV; --exposure sets it", exposure));
-    return exposure;
-}
-
 // Of all frames; `meter(camera)` draws the picture that it is chosen from.
 template <class Meter>
 void choose_exposure(const FrameOptions& options, const runtime::Camera& camera, Drawing& drawing,
@@ -196,6 +189,12 @@ void draw_on_gpu([[maybe_unused]] const FrameOptions& options,
 }
 
 }  // namespace
+
+float note_exposure(const runtime::Picture& metered) {
+    const float exposure = runtime::choose_exposure(metered);
+    if (exposure != 0) print_note(fmt::format("exposure {:+.2f} EV; --exposure sets it", exposure));
+    return exposure;
+}
 
 #ifdef OPALINE_HAS_GL
 formats::Status prepare_renderer(const formats::AssetView& view, const PictureLight& light,

@@ -12,6 +12,7 @@
 #include "formats/opal/terms.h"
 #include "runtime/emitter_light.h"
 #include "runtime/picture/camera.h"
+#include "runtime/picture/picture.h"
 #include "runtime/picture/tone_map.h"
 #ifdef OPALINE_HAS_GL
 #include "runtime/gl/gl_renderer.h"
@@ -35,6 +36,9 @@ struct FrameOptions {
     bool stats = false;
     std::function<void(const bake::Progress&)> on_progress;  ///< of several frames; may be empty
 };
+
+/// Exposure [EV] that a metered picture asks for, with a note where it is not 0.
+float note_exposure(const runtime::Picture& metered);
 
 /// Where a frame is written: OUT.png, or OUT-0001.png and so on of several. `frame` from 0.
 std::string frame_path(const FrameOptions& options, std::uint32_t frame);

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bake/cli/command.h"
+#include "bake/cli/draw_frames.h"
 #include "bake/cli/inputs.h"
 #include "bake/cli/interrupt.h"
 #include "bake/cli/machine_limits.h"
@@ -131,6 +132,27 @@ void make_table(const ReferenceOptions& options, const bake::PathSpace& space,
     print_summary(options, estimate);
 }
 
+// As `render` chooses it: of what stands before the background.
+float exposure_of(const ReferenceOptions& options, const bake::PathSpace& space,
+                  const runtime::Camera& camera, runtime::Picture picture) {
+    if (options.exposure || ending_of(options.output) == ".exr") {
+        return options.exposure.value_or(0.0f);
+    }
+    const bake::HitScene& surfaces = space.scene.surfaces;
+    const runtime::CameraFrame frame = runtime::camera_frame(camera);
+    const bake::RayOrigin eye{glm::dvec3(camera.eye.x, camera.eye.y, camera.eye.z) -
+                              surfaces.scene().origin};
+    for (std::uint32_t i = 0; surfaces.scene().volumes.empty() && i < picture.pixel.size(); ++i) {
+        const formats::Vec3 ray =
+            runtime::view_ray(camera, frame, i % camera.width + 0.5, i / camera.width + 0.5);
+        if (!surfaces.closest_hit(eye, {ray.x, ray.y, ray.z},
+                                  std::numeric_limits<float>::infinity())) {
+            picture.pixel[i] = {};
+        }
+    }
+    return note_exposure(picture);
+}
+
 void make_picture(const ReferenceOptions& options, const bake::PathSpace& space,
                   const bake::EstimateOptions& wanted, const bake::Context& context) {
     const formats::Asset stand_in = make_stand_in(space.scene.surfaces.scene());
@@ -140,7 +162,7 @@ void make_picture(const ReferenceOptions& options, const bake::PathSpace& space,
     report_lost_paths(options, image.estimate);
     require(formats::write_exr(variance_path(options.output), image.variance));
     const runtime::Picture picture{image.mean.width, image.mean.height, image.mean.pixel};
-    require(write_picture(options.output, picture, options.exposure.value_or(0.0f)));
+    require(write_picture(options.output, picture, exposure_of(options, space, camera, picture)));
     print_summary(options, image.estimate);
 }
 

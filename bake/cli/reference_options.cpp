@@ -136,7 +136,7 @@ void add_reference_options(const Command& command, ReferenceOptions& options) {
          {"--size", "--azimuth", "--elevation", "--distance", "--target", "--up", "--fov"}) {
         options.picture_options.push_back(command.find(name));
     }
-    add_exposure_option(command, options.exposure, "0");
+    add_exposure_option(command, options.exposure, "as `render` chooses it; 0 of .exr");
     add_rotate_light_option(command, options.rotate_light);
     add_progress_option(command, options.progress);
 }

@@ -42,7 +42,7 @@ struct ReferenceOptions : SceneSource {
     double rotate_light = 0, seconds = 0;
     std::uint32_t receivers = 0, samples = 0, max_depth = 0;
     std::uint64_t seed = 0;
-    std::optional<float> exposure;  ///< [EV]; nothing: 0
+    std::optional<float> exposure;  ///< [EV]; nothing: by the picture, 0 of .exr
     unsigned threads = 0;
     ProgressStyle progress = ProgressStyle::automatic;
     std::vector<Option> picture_options;  ///< that say nothing of receivers

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,6 +30,7 @@
 #include "bake/scene/even_media.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/scene/shared_rows.h"
+#include "bake/trace/contacts.h"
 #include "bake/trace/hidden_receivers.h"
 #include "bake/trace/stand_ins.h"
 #include "bake/trace/touching_triangles.h"
@@ -41,6 +43,9 @@ std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const Scen
     std::vector<Receiver> vertices =
         leave_touching_triangles(rays.hierarchy(), scene, make_vertex_receivers(scene), context);
     std::vector<BodyPoint> inside = make_body_points(scene, vertices);
+    std::vector<std::uint32_t> all(vertices.size());
+    std::iota(all.begin(), all.end(), 0u);
+    look_beside_contacts(find_contacts(rays.hierarchy(), scene, all, context), vertices, inside);
     vertices = replace_hidden_receivers(rays, scene, std::move(vertices), context);
     const std::vector<std::uint32_t> stand_in =
         find_stand_ins(scene, facts, rays.hierarchy(), context);

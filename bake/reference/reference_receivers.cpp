@@ -9,6 +9,7 @@
 #include "bake/base/rng.h"
 #include "bake/receivers/used_vertices.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/trace/contacts.h"
 #include "bake/trace/touching_triangles.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/rgb.h"
@@ -96,8 +97,14 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
     std::uint64_t first = 0;
     std::uint32_t primitive = 0;
     const std::vector<std::uint32_t> used = find_used_vertices(input);
+    std::vector<std::uint32_t> numbers;
     for (const std::uint64_t drawn : draw(used.size(), wanted, seed)) {
-        const std::uint32_t number = used[drawn];
+        numbers.push_back(used[drawn]);
+    }
+    const std::vector<Contact> contacts =
+        find_contacts(scene.surfaces.hierarchy(), input, numbers, {});
+    auto contact = contacts.begin();
+    for (const std::uint32_t number : numbers) {
         while (number >= first + input.primitives[primitive].position.size()) {
             first += input.primitives[primitive++].position.size();
         }
@@ -111,6 +118,11 @@ std::vector<ReferenceReceiver> choose_receivers(const ReferenceScene& scene, std
             leave_touching_triangles(scene.surfaces.hierarchy(), input, position, origins[number])
                 .origin;
         receiver.inside = position - (receiver.outside - position);
+        if (contact != contacts.end() && contact->vertex == number) {
+            receiver.outside = contact->place + contact->lift;
+            receiver.inside = contact->place - contact->lift;
+            ++contact;
+        }
         receiver.normal = p.normal[receiver.vertex];
         receiver.to_eye =
             eye ? direction_to(input.to_world(position), *eye, receiver.normal) : receiver.normal;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -40,10 +41,49 @@ WatchedMesh::WatchedMesh(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
+void WatchedMesh::find_boosts(const AreaTable& table) {
+    std::vector<double> area(mesh_.scene().primitives.size(), 0.0);
+    for (std::size_t i = 0; i < table.triangle.size(); ++i) {
+        area[table.triangle[i].primitive] +=
+            table.cumulative[i] - (i > 0 ? table.cumulative[i - 1] : 0);
+    }
+    const auto size = [](double a) { return std::sqrt(std::sqrt(a)); };
+    double sizes = 0;
+    for (const double a : area) {
+        sizes += size(a);
+    }
+    boost_.clear();
+    for (const double a : area) {
+        boost_.push_back(a > 0 ? std::max(1.0, size(a) / sizes / (a / table.total())) : 1.0);
+    }
+}
+
+// Where a lamp is many times as bright as on most of what it lights, a screen shows white.
+void WatchedMesh::find_bright_lamps() {
+    constexpr double kWhite = 64;
+    for (std::size_t lamp = 0; lamp < rows_.lamps; ++lamp) {
+        std::vector<float> lit;
+        for (std::uint32_t row = 0; row < rows_.size(); ++row) {
+            const float light = rows_.lamps_of(row)[lamp];
+            if (light > 0) lit.push_back(light);
+        }
+        const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
+        std::ranges::nth_element(lit, middle);
+        bright_[lamp] = lit.empty() ? 1 : kWhite * static_cast<double>(*middle);
+    }
+}
+
 void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> all(mesh_.scene().primitives.size());
     std::iota(all.begin(), all.end(), 0u);
-    const AreaTable table = make_area_table(mesh_.scene(), all);
+    AreaTable table = make_area_table(mesh_.scene(), all);
+    area_ = table.total();
+    find_boosts(table);
+    double sum = 0, before = 0;
+    for (std::size_t i = 0; i < table.triangle.size(); ++i) {
+        sum += boost_[table.triangle[i].primitive] * (table.cumulative[i] - before);
+        before = std::exchange(table.cumulative[i], sum);
+    }
     watched_.assign(mesh_.size(), {});
     std::vector<ProxyPoint> points;
     std::vector<std::uint32_t> fresh;
@@ -61,17 +101,18 @@ void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     trace(points);
     look_at(fresh);
     total_ = unseen_ = {};
-    area_ = table.total();
     if (context_.cancelled()) return;
+    find_bright_lamps();
     measure(fresh);
-    const double share = area_ / static_cast<double>(count);
+    const double share = table.total() / static_cast<double>(count);
     for (const std::uint32_t triangle : fresh) {
         // A small triangle's point stands for others beside it, which nothing looks at.
         const Watched& own = watched_[triangle];
         const double area = share * static_cast<double>(own.looks.size());
-        add_scaled(unseen_, std::max(0.0, area - mesh_.area(triangle)), own.error);
+        add_scaled(unseen_, std::max(0.0, area - weight(triangle)), own.error);
         for (const Look& look : own.looks) {
-            add_scaled(total_, share, square_beyond(rows_, solid_angle_, look.row, {}));
+            add_scaled(total_, share / boost_[mesh_[triangle].primitive],
+                       square_beyond(rows_, solid_angle_, bright_, look.row, {}));
         }
     }
 }
@@ -98,7 +139,7 @@ void WatchedMesh::look_at_parts() {
     if (!context_.cancelled()) measure(parts_);
     for (const std::uint32_t t : joined_) {
         for (std::size_t c = 0; c < unseen_.size(); ++c) {
-            unseen_[c] = std::max(0.0, unseen_[c] - mesh_.area(t) * watched_[t].error[c]);
+            unseen_[c] = std::max(0.0, unseen_[c] - weight(t) * watched_[t].error[c]);
         }
     }
     parts_.clear();
@@ -174,7 +215,7 @@ ErrorColumns WatchedMesh::square_at(std::uint32_t triangle, const Look& look) co
     for (std::size_t k = 0; k < count; ++k) {
         corners[k].weight /= sum;
     }
-    return square_beyond(rows_, solid_angle_, look.row, std::span(corners).first(count));
+    return square_beyond(rows_, solid_angle_, bright_, look.row, std::span(corners).first(count));
 }
 
 void WatchedMesh::measure(std::span<const std::uint32_t> triangles) {

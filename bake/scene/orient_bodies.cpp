@@ -179,28 +179,41 @@ bool is_double_sided_opaque(const formats::Material& material) {
     return material.double_sided && !material.medium && !material.sheet;
 }
 
-// Points that tell whether a closed shell has something inside: a vertex of each other shell, some
-// of each other primitive, all lights.
-std::vector<glm::dvec3> places_of_others(const Scene& scene, const std::vector<bool>& chosen) {
-    constexpr std::size_t kPlaces = 64;  // of a primitive
-    std::vector<glm::dvec3> places;
+// Places of a thing that may lie inside a closed shell.
+using PlacesOfThing = std::vector<glm::dvec3>;
+
+// Of each shell, other primitive and light; the shells come first.
+std::vector<PlacesOfThing> find_things(const Scene& scene, const std::vector<bool>& chosen,
+                                       const BodyShells& body) {
+    constexpr std::size_t kPlaces = 16;  // of a thing, about
+    std::vector<PlacesOfThing> things;
+    for (const BodyShell& shell : body.shell) {
+        PlacesOfThing& places = things.emplace_back();
+        for (std::size_t i = 0; i < shell.count; i += 1 + shell.count / kPlaces) {
+            const BodyTriangle& t = body.triangle[body.order[shell.first + i]];
+            for (const std::uint32_t point : t.point) {
+                places.emplace_back(body.position[point]);
+            }
+        }
+    }
     for (const Primitive& p : scene.primitives) {
-        if (chosen[p.material]) continue;
-        const std::size_t step = 1 + p.position.size() / kPlaces;
-        for (std::size_t v = 0; v < p.position.size(); v += step) {
+        if (chosen[p.material] || p.position.empty()) continue;
+        PlacesOfThing& places = things.emplace_back();
+        for (std::size_t v = 0; v < p.position.size(); v += 1 + p.position.size() / kPlaces) {
             places.emplace_back(p.position[v]);
         }
     }
     for (const formats::Light& light : scene.lights) {
-        if (light.type != formats::Light::Type::directional) places.emplace_back(light.position);
+        if (light.type != formats::Light::Type::directional) things.push_back({light.position});
     }
-    return places;
+    return things;
 }
 
+// All of it: a leg that ends in a table's top leaves the top's inside unseen.
 bool has_something_inside(const BodyShells& body, const BodyShell& shell,
-                          const std::vector<glm::dvec3>& places, std::uint64_t& work_left) {
+                          const std::vector<PlacesOfThing>& things, std::uint64_t& work_left) {
     constexpr std::uint64_t kBoxes = 8;  // tests that take as long as one of a triangle
-    const std::uint64_t boxes = (places.size() + body.shell.size()) / kBoxes;
+    const std::uint64_t boxes = things.size() / kBoxes;
     if (work_left < boxes) return true;  // two sides are right in any case
     work_left -= boxes;
     std::vector<Corners> triangles;
@@ -214,21 +227,22 @@ bool has_something_inside(const BodyShells& body, const BodyShell& shell,
         if (triangles.empty()) triangles = corners_of(body, shell);
         return encloses(triangles, place);
     };
-    return std::ranges::any_of(places, is_inside) ||
-           std::ranges::any_of(body.shell, [&](const BodyShell& other) {
-               return &other != &shell &&
-                      is_inside(body.position[body.triangle[body.order[other.first]].point[0]]);
-           });
+    const auto own = static_cast<std::size_t>(&shell - body.shell.data());
+    for (std::size_t i = 0; i < things.size(); ++i) {
+        if (i != own && std::ranges::all_of(things[i], is_inside)) return true;
+    }
+    return false;
 }
 
 // Viewers light and show both sides of a double-sided surface. Of a closed one with nothing inside
-// only the outside can be seen: it has the row, whichever way the faces point.
+// only the outside can be seen: it has the row, whichever way the faces point. A material of such
+// alone has one side, so that what ends in them counts as hidden.
 void settle_double_sided(const Scene& given, OrientedBodies& result) {
     const std::vector<bool> chosen = choose_materials(given, is_double_sided_opaque);
     if (std::ranges::find(chosen, true) == chosen.end()) return;
     BodyShells body = make_body_shells(latest(given, result), chosen);
-    const std::vector<glm::dvec3> places = places_of_others(given, chosen);
-    std::vector<bool> has_two_sides(chosen.size(), false);
+    const std::vector<PlacesOfThing> things = find_things(given, chosen, body);
+    std::vector<bool> has_two_sides(chosen.size(), false), is_closed(chosen.size(), false);
     std::uint64_t work_left = 100'000'000;  // a second or two
     for (const BodyShell& shell : body.shell) {
         const auto material_of = [&](std::uint32_t i) {
@@ -238,8 +252,11 @@ void settle_double_sided(const Scene& given, OrientedBodies& result) {
         for (std::uint32_t i = shell.first; is_whole && i < shell.first + shell.count; ++i) {
             is_whole = !has_holes(given.materials[material_of(i)]);
         }
-        if (is_whole && !has_something_inside(body, shell, places, work_left)) {
+        if (is_whole && !has_something_inside(body, shell, things, work_left)) {
             if (has_volume(shell) && shell.volume < 0) turn(body, shell);
+            for (std::uint32_t i = 0; has_volume(shell) && i < shell.count; ++i) {
+                is_closed[material_of(shell.first + i)] = true;
+            }
             continue;
         }
         for (std::uint32_t i = shell.first; i < shell.first + shell.count; ++i) {
@@ -249,7 +266,11 @@ void settle_double_sided(const Scene& given, OrientedBodies& result) {
     }
     apply_turns(body, given, result);
     for (std::size_t m = 0; m < has_two_sides.size(); ++m) {
-        if (has_two_sides[m]) changed(given, result).materials[m].sheet.emplace();
+        if (has_two_sides[m]) {
+            changed(given, result).materials[m].sheet.emplace();
+        } else if (is_closed[m]) {
+            changed(given, result).materials[m].double_sided = false;
+        }
     }
 }
 

@@ -26,9 +26,9 @@ struct OrientedBodies {
 
 /// Turns the triangles of media that face inward, and the normals of their vertices with them
 /// (README.md, "Orientation"): the medium lies behind its triangles, so a body turned
-/// inside out would be black. Of double-sided opaque surfaces, closed shells with nothing inside
-/// are turned outward, too; where a material has others, it becomes a sheet that transmits nothing,
-/// which has light on each of its sides.
+/// inside out would be black. Of double-sided opaque surfaces, closed shells with nothing wholly
+/// inside are turned outward, too, and a material of such alone has one side. Where it has others,
+/// it becomes a sheet that transmits nothing, which has light on each of its sides.
 ///
 /// Seams that rounding opened are closed (weld_seams.h). Vertices at one position are one point.
 /// Triangles that share an edge with exactly one other form a shell. A shell is turned to the

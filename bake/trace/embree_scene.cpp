@@ -85,6 +85,11 @@ bool add_triangles(RTCDevice device, RTCScene scene, const Primitive& p, Primiti
     return has_room;
 }
 
+bool hides_inside(const formats::Material& material) {
+    const bool is_clear = material.medium && material.medium->sigma_s == formats::Rgb{};
+    return !material.double_sided && !is_clear;
+}
+
 }  // namespace
 
 EmbreeScene::EmbreeScene(EmbreeScene&& other) noexcept {
@@ -149,7 +154,7 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
             return failed("no memory for its geometry");
         }
         const float magnitude = std::max({farthest.x, farthest.y, farthest.z});
-        built.geometries_.push_back({number, p.material, scene.materials[p.material].double_sided,
+        built.geometries_.push_back({number, p.material, hides_inside(scene.materials[p.material]),
                                      intersection_error_bound(magnitude)});
         built.triangles_ += p.index.size() / 3;
     }

@@ -38,7 +38,7 @@ class EmbreeScene {
     /// The triangles of one primitive.
     struct Geometry {
         std::uint32_t primitive, material;  ///< numbers of formats::Scene
-        bool double_sided;
+        bool hides;         ///< nobody sees what its back faces: not double-sided, nor clear
         float error_bound;  ///< [m], of the computed position of a hit
     };
     /// `id`: RTCHit::geomID.

@@ -12,23 +12,15 @@
 namespace opaline::bake {
 namespace {
 
-// Sixteen cosine-weighted directions around the normal, on a golden-angle spiral.
 RayPacket probe_packet(const Receiver& receiver) {
-    RayPacket packet{};
-    const glm::vec3 origin = receiver.origin;
-    const Frame frame = make_frame(receiver.normal);
-    for (std::uint32_t i = 0; i < RayPacket::kSize; ++i) {
-        const float r2 = (static_cast<float>(i) + 0.5f) / static_cast<float>(RayPacket::kSize);
-        const float phi =
-            2.0f * std::numbers::pi_v<float> * (static_cast<float>(i) / std::numbers::phi_v<float>);
-        const float r = std::sqrt(r2);
-        const glm::vec3 d =
-            frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - r2)});
-        packet.org_x[i] = origin.x, packet.org_y[i] = origin.y, packet.org_z[i] = origin.z;
-        packet.dir_x[i] = d.x, packet.dir_y[i] = d.y, packet.dir_z[i] = d.z;
+    RayPacket packet = rays_from(receiver.origin);
+    const auto directions = probe_directions(receiver.normal);
+    for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
+        packet.dir_x[i] = directions[i].x;
+        packet.dir_y[i] = directions[i].y;
+        packet.dir_z[i] = directions[i].z;
     }
     packet.tfar.fill(std::numeric_limits<float>::infinity());
-    packet.mask.fill(0xffffffffu);
     return packet;
 }
 
@@ -62,6 +54,20 @@ std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
 }
 
 }  // namespace
+
+std::array<glm::vec3, RayPacket::kSize> probe_directions(glm::vec3 normal) {
+    std::array<glm::vec3, RayPacket::kSize> directions;
+    const Frame frame = make_frame(normal);
+    for (std::uint32_t i = 0; i < RayPacket::kSize; ++i) {
+        const float r2 = (static_cast<float>(i) + 0.5f) / static_cast<float>(RayPacket::kSize);
+        const float phi =
+            2.0f * std::numbers::pi_v<float> * (static_cast<float>(i) / std::numbers::phi_v<float>);
+        const float r = std::sqrt(r2);
+        directions[i] =
+            frame.to_world({r * std::cos(phi), r * std::sin(phi), std::sqrt(1.0f - r2)});
+    }
+    return directions;
+}
 
 bool is_hidden(const RayScene& rays, const Receiver& receiver) {
     if (rays.is_empty() || receiver.normal == glm::vec3(0)) return false;

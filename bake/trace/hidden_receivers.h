@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "bake/base/context.h"
@@ -9,7 +11,10 @@
 
 namespace opaline::bake {
 
-/// Every one of 16 probe rays over the hemisphere meets the back of a single-sided triangle first.
+/// Sixteen cosine-weighted directions around a normal, on a golden-angle spiral.
+std::array<glm::vec3, RayPacket::kSize> probe_directions(glm::vec3 normal);
+
+/// Every one of 16 probe rays over the hemisphere meets the back of a triangle that hides first.
 bool is_hidden(const RayScene& rays, const Receiver& receiver);
 
 /// Vertices inside a closed body are black, such as floor vertices under a statue. Interpolation

@@ -77,7 +77,7 @@ LaneMask RayScene::meets_back_face(const LaneMask& lanes, const RayPacket& packe
     LaneMask back{};
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         if (lanes[i] != 0 && ray.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID &&
-            !triangles_.geometry(ray.hit.geomID[i]).double_sided) {
+            triangles_.geometry(ray.hit.geomID[i]).hides) {
             const float along = ray.hit.Ng_x[i] * packet.dir_x[i] +
                                 ray.hit.Ng_y[i] * packet.dir_y[i] +
                                 ray.hit.Ng_z[i] * packet.dir_z[i];

@@ -62,7 +62,8 @@ class RayScene {
     /// is not hit again.
     PacketHits closest(const LaneMask& lanes, const RayPacket& packet) const;
 
-    /// Which of the rays in `lanes` meet the back of a single-sided triangle first: -1 yes, 0 no.
+    /// Which of the rays in `lanes` meet the back of a triangle that hides first (see
+    /// EmbreeScene::Geometry): -1 yes, 0 no.
     /// Inside a closed body all do.
     LaneMask meets_back_face(const LaneMask& lanes, const RayPacket& packet) const;
 

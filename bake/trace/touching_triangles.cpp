@@ -7,7 +7,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <span>
+#include <iterator>
 #include <utility>
 
 #include "bake/base/ordered_parallel.h"
@@ -21,23 +21,13 @@ namespace {
 // Triangles around a vertex; more belong to no clean mesh, and bound the work of a hostile one.
 constexpr std::size_t kMostTriangles = 128;
 
-struct Found {
-    std::uint32_t primitive, triangle;
-    bool is_corner;  // the vertex is a corner of the triangle
-    glm::vec3 normal;
-    float extent;  // [m], largest coordinate difference from the vertex to a corner
-
-    auto place() const { return std::pair(primitive, triangle); }
-};
-
 struct Search {
     const EmbreeScene& triangles;
     const formats::Scene& scene;
     glm::vec3 position;
     float radius;
-    std::array<Found, kMostTriangles> found;
-    std::size_t count = 0;
-    bool has_touching = false, is_full = false;
+    std::vector<TouchingTriangle> found;
+    bool is_full = false;
 };
 
 // Of Embree's point query, for each triangle whose box is near.
@@ -60,36 +50,44 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
         (!is_corner && distance_to_triangle(to[0], to[1], to[2]) > double{search.radius})) {
         return false;
     }
-    if (search.count == kMostTriangles) {
+    if (search.found.size() == kMostTriangles) {
         search.is_full = true;
         arguments->query->radius = 0;
         return true;  // the query goes on with the smaller radius
     }
-    search.found[search.count++] = {number, arguments->primID, is_corner, normal, extent};
-    search.has_touching = search.has_touching || !is_corner;
+    search.found.push_back({number, arguments->primID, is_corner, normal, extent});
     return false;
 }
 
 }  // namespace
 
-Receiver leave_touching_triangles(const EmbreeScene& triangles, const formats::Scene& scene,
-                                  glm::vec3 position, Receiver receiver) {
-    // The clearance of the vertex's own triangles bounds the rounding of its coordinates, too.
-    Search search{triangles, scene, position, glm::distance(receiver.origin, position), {}};
-    if (triangles.triangles() == 0 || !(search.radius > 0)) return receiver;
-    RTCPointQuery query{position.x, position.y, position.z, 0, search.radius};
+std::vector<TouchingTriangle> find_touching_triangles(const EmbreeScene& triangles,
+                                                      const formats::Scene& scene,
+                                                      glm::vec3 position, float radius) {
+    Search search{triangles, scene, position, radius, {}};
+    if (triangles.triangles() == 0 || !(radius > 0)) return {};
+    RTCPointQuery query{position.x, position.y, position.z, 0, radius};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     rtcPointQuery(triangles.handle(), &query, &context, visit, &search);
-    if (!search.has_touching || search.is_full) return receiver;
+    if (search.is_full) return {};
     // Embree's order depends on its hierarchy; that of the sums must not.
-    const auto found = std::span(search.found).first(search.count);
-    std::ranges::sort(found, {}, &Found::place);
-    std::array<glm::vec3, kMostTriangles> normals;
-    std::ranges::transform(found, normals.begin(), &Found::normal);
-    const Clearance clearance = clearest_direction(std::span(normals).first(search.count));
+    std::ranges::sort(search.found, {},
+                      [](const TouchingTriangle& t) { return std::pair(t.primitive, t.triangle); });
+    return std::move(search.found);
+}
+
+Receiver leave_touching_triangles(const EmbreeScene& triangles, const formats::Scene& scene,
+                                  glm::vec3 position, Receiver receiver) {
+    // The clearance of the vertex's own triangles bounds the rounding of its coordinates, too.
+    const std::vector<TouchingTriangle> found = find_touching_triangles(
+        triangles, scene, position, glm::distance(receiver.origin, position));
+    if (std::ranges::all_of(found, &TouchingTriangle::is_corner)) return receiver;
+    std::vector<glm::vec3> normals;
+    std::ranges::transform(found, std::back_inserter(normals), &TouchingTriangle::normal);
+    const Clearance clearance = clearest_direction(normals);
     if (!(clearance.cosine > kLeastClearance)) return receiver;
-    const float extent = std::ranges::max(found, {}, &Found::extent).extent;
+    const float extent = std::ranges::max(found, {}, &TouchingTriangle::extent).extent;
     receiver.origin =
         position + (clearance_bound(position, extent) / clearance.cosine) * clearance.direction;
     return receiver;

@@ -63,6 +63,20 @@ TEST(Exposure, ASunInLuxIsNoWhitePictureAndAllFramesShareOneExposure) {
     EXPECT_GT(radiance->pixel[48 * 18 + 24].g, 50);
 }
 
+TEST(Exposure, PathTracingsPictureOfASunInLuxIsExposedAsTheBakesIs) {
+    SmallScene small;
+    const std::string file = bake_sunlit(small);
+    const auto exposure_of = [](const std::string& note) {
+        const std::string before = "exposure ";
+        return std::stod(note.substr(note.find(before) + before.size()));
+    };
+    const Arguments picture{"--light", "studio", "--size", "48x36", "-o", small.path("a.png")};
+    const double baked = exposure_of(run_well(join({"render", file}, picture)).err);
+    const double traced = exposure_of(
+        run_well(join({"reference", small.path("sun.glb"), "--spp", "4"}, picture)).err);
+    EXPECT_NEAR(traced, baked, 0.3);
+}
+
 TEST(Exposure, PlanAndInfoSayByHowMuchALampOutshinesTheSky) {
     SmallScene small;
     const std::string file = bake_sunlit(small);

@@ -57,5 +57,15 @@ TEST(HiddenReceivers, DoubleSidedBodiesAndClosedRoomsStayDarkInside) {
     }
 }
 
+TEST(HiddenReceivers, WhatStandsInClearGlassIsSeen) {
+    auto scene = box_on_floor(false);
+    scene.primitives[0].material = 1;
+    scene.materials.resize(2);
+    scene.materials[1].medium.emplace().sigma_s = {0, 0, 0};
+    EXPECT_FALSE(is_hidden(tests::build_rays(scene), {{0, 0.1f, 0}, {0, 1, 0}}));
+    scene.materials[1].medium->sigma_s = {1, 1, 1};
+    EXPECT_TRUE(is_hidden(tests::build_rays(scene), {{0, 0.1f, 0}, {0, 1, 0}}));
+}
+
 }  // namespace
 }  // namespace opaline::bake
