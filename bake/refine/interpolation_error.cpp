@@ -5,8 +5,7 @@
 namespace opaline::bake {
 
 ErrorColumns square_beyond(const ProxyRows& rows, std::span<const double> solid_angle,
-                           const BrightLamps& bright, std::uint32_t row,
-                           std::span<const MixedRow> others) {
+                           std::uint32_t row, std::span<const MixedRow> others) {
     constexpr double kPi = std::numbers::pi;
     constexpr double kOpen = 2 * kPi / 3;  // integral of the cosine's square over a hemisphere
     double suns = 0;
@@ -27,12 +26,10 @@ ErrorColumns square_beyond(const ProxyRows& rows, std::span<const double> solid_
     ErrorColumns square{};
     square[0] = 0.5 * (suns / kOpen + (sky[0] / kPi) * (sky[1] / kPi));
     for (std::size_t lamp = 0; lamp < rows.lamps; ++lamp) {
-        double mixed = 0;
+        double value = static_cast<double>(rows.lamps_of(row)[lamp]);
         for (const MixedRow& other : others) {
-            mixed += static_cast<double>(other.weight * rows.lamps_of(other.row)[lamp]);
+            value -= static_cast<double>(other.weight * rows.lamps_of(other.row)[lamp]);
         }
-        const auto seen = [&](double light) { return light / (1 + light / bright[lamp]); };
-        const double value = seen(static_cast<double>(rows.lamps_of(row)[lamp])) - seen(mixed);
         square[1 + lamp] = value * value;
     }
     return square;

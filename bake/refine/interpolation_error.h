@@ -12,9 +12,6 @@ namespace opaline::bake {
 /// Squares by kind of light: distant light, then lamps.
 using ErrorColumns = std::array<double, 1 + ProxyTracer::kMostLamps>;
 
-/// Irradiance of each lamp [lx] at which differences count half.
-using BrightLamps = std::array<double, ProxyTracer::kMostLamps>;
-
 /// A corner's part in what a triangle interpolates.
 struct MixedRow {
     std::uint32_t row;
@@ -24,11 +21,9 @@ struct MixedRow {
 /// The square of what proxy `row` is beyond the sum of others; of the row itself without any.
 /// Distant light: the mean square over suns of all directions and the square under an even sky,
 /// half each, in units in which both are 1 of an open receiver; products of the two estimates of a
-/// row, so that noise has a mean of 0, and single values may be negative. Lamps: [lx^2], of E / (1
-/// + E / bright): a lamp is brightest where few look. `solid_angle`: of the cells of a face [sr]
-/// (formats::texel_solid_angles).
+/// row, so that noise has a mean of 0, and single values may be negative. Lamps: [lx^2].
+/// `solid_angle`: of the cells of a face [sr] (formats::texel_solid_angles).
 ErrorColumns square_beyond(const ProxyRows& rows, std::span<const double> solid_angle,
-                           const BrightLamps& bright, std::uint32_t row,
-                           std::span<const MixedRow> others);
+                           std::uint32_t row, std::span<const MixedRow> others);
 
 }  // namespace opaline::bake

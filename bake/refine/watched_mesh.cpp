@@ -58,21 +58,6 @@ void WatchedMesh::find_boosts(const AreaTable& table) {
     }
 }
 
-// Where a lamp is many times as bright as on most of what it lights, a screen shows white.
-void WatchedMesh::find_bright_lamps() {
-    constexpr double kWhite = 64;
-    for (std::size_t lamp = 0; lamp < rows_.lamps; ++lamp) {
-        std::vector<float> lit;
-        for (std::uint32_t row = 0; row < rows_.size(); ++row) {
-            const float light = rows_.lamps_of(row)[lamp];
-            if (light > 0) lit.push_back(light);
-        }
-        const auto middle = lit.begin() + static_cast<std::ptrdiff_t>(lit.size() / 2);
-        std::ranges::nth_element(lit, middle);
-        bright_[lamp] = lit.empty() ? 1 : kWhite * static_cast<double>(*middle);
-    }
-}
-
 void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> all(mesh_.scene().primitives.size());
     std::iota(all.begin(), all.end(), 0u);
@@ -102,7 +87,6 @@ void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     look_at(fresh);
     total_ = unseen_ = {};
     if (context_.cancelled()) return;
-    find_bright_lamps();
     measure(fresh);
     const double share = table.total() / static_cast<double>(count);
     for (const std::uint32_t triangle : fresh) {
@@ -112,7 +96,7 @@ void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
         add_scaled(unseen_, std::max(0.0, area - weight(triangle)), own.error);
         for (const Look& look : own.looks) {
             add_scaled(total_, share / boost_[mesh_[triangle].primitive],
-                       square_beyond(rows_, solid_angle_, bright_, look.row, {}));
+                       square_beyond(rows_, solid_angle_, look.row, {}));
         }
     }
 }
@@ -215,7 +199,7 @@ ErrorColumns WatchedMesh::square_at(std::uint32_t triangle, const Look& look) co
     for (std::size_t k = 0; k < count; ++k) {
         corners[k].weight /= sum;
     }
-    return square_beyond(rows_, solid_angle_, bright_, look.row, std::span(corners).first(count));
+    return square_beyond(rows_, solid_angle_, look.row, std::span(corners).first(count));
 }
 
 void WatchedMesh::measure(std::span<const std::uint32_t> triangles) {

@@ -73,7 +73,6 @@ class WatchedMesh {
     };
 
     void find_boosts(const AreaTable& table);
-    void find_bright_lamps();
     void trace(std::span<const ProxyPoint> points);
     ProxyPoint point_in(std::uint32_t triangle, glm::vec3 weight) const;
     void look_at(std::span<const std::uint32_t> triangles);
@@ -94,7 +93,6 @@ class WatchedMesh {
     std::vector<std::vector<std::uint32_t>> vertex_row_;
     std::unordered_map<VertexEdge, std::uint32_t, EdgeHash> middle_row_;
     std::vector<double> boost_;  ///< of each primitive, 1 or more
-    BrightLamps bright_{};
     double area_ = 0;
     ErrorColumns total_{}, unseen_{};
     std::uint64_t traced_ = 0;

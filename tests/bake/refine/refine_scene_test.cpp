@@ -90,20 +90,6 @@ TEST(RefineScene, AShadowOnASmallTableOverALargeFloorIsFound) {
     EXPECT_LT(interpolation_error(*found.scene, 0, open_share), 0.03);
 }
 
-TEST(RefineScene, ALampThatNearlyTouchesAFloorLeavesReceiversForShadows) {
-    Scene scene = ball_over_two_triangles();
-    formats::Light lamp;
-    lamp.type = formats::Light::Type::point;
-    lamp.position = {-1.5f, 0.01f, -1.3f};
-    lamp.intensity = {1, 1, 1};
-    scene.lights.push_back(lamp);
-    RefineLimits limits = some_limits(0.05);
-    limits.most_added = 1200;
-    const RefinedScene found = refine(scene, limits);
-    ASSERT_TRUE(found.scene);
-    EXPECT_LT(interpolation_error(*found.scene, 0, open_share), 0.015);
-}
-
 // 500; by one estimate of each row alone 37,000.
 TEST(RefineScene, RoundingToAFewRaysAddsFewReceivers) {
     EXPECT_LT(refine(ball_over_two_triangles(), some_limits(0.01)).report.added, 1000u);
