@@ -6,6 +6,7 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/messages.h"
+#include "bake/cli/option_values.h"
 #include "bake/cli/usage_errors.h"
 #include "bake/lab/example/example_scenes.h"
 #include "bake/lights/builtin_environment.h"

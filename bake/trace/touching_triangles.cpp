@@ -46,8 +46,8 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
         is_corner = is_corner || weld_key(corner) == weld_key(search.position);
     }
     const glm::vec3 normal = triangle_normal(p, arguments->primID);
-    if (normal == glm::vec3(0) ||
-        (!is_corner && distance_to_triangle(to[0], to[1], to[2]) > double{search.radius})) {
+    if (normal == glm::vec3(0) || (!is_corner && distance_to_triangle(to[0], to[1], to[2]) >
+                                                     static_cast<double>(search.radius))) {
         return false;
     }
     if (search.found.size() == kMostTriangles) {

@@ -67,7 +67,8 @@ void add_view_command(Program& program) {
     options.camera.size = "1280x800";
     ViewState& begin = options.begin;
     add_asset_argument(command, begin.file);
-    command.add("other", "OTHER.opal", file_name(begin.other), "a second one, shown right of a split");
+    command.add("other", "OTHER.opal", file_name(begin.other),
+                "a second one, shown right of a split");
     command.add("--light", "ENV [studio]", text(begin.light), light_help());
     command.add("--script", "FILE", file_name(options.script),
                 "carry out the commands of a file, one a line; then the window stays open");

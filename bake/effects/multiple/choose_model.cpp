@@ -17,7 +17,8 @@ namespace opaline::bake {
 namespace {
 
 double expected_error(const formats::Medium& medium, const MaterialFacts& body) {
-    const double length = boundary_reach(double{medium.eta}) * transport_mean_free_path(medium);
+    const double length =
+        boundary_reach(static_cast<double>(medium.eta)) * transport_mean_free_path(medium);
     if (!(length > 0)) return 0;
     return half_space_error(body.has_thickness() ? 4 * std::abs(body.volume) / body.area / length
                                                  : 0);

@@ -47,7 +47,7 @@ std::array<double, 3> transport_lengths(const formats::Medium& medium,
     for (std::size_t b = 0; b < 3; ++b) {
         const double extinction = (1 - g) * bands[b].sigma_s + bands[b].sigma_a;
         if (extinction > 0 && profile.total(b) > 0 && profile.total(b) >= kLeastShare * most) {
-            lengths[b] = boundary_reach(double{medium.eta}) / extinction;
+            lengths[b] = boundary_reach(static_cast<double>(medium.eta)) / extinction;
         }
     }
     return lengths;
