@@ -143,8 +143,8 @@ float exposure_of(const ReferenceOptions& options, const bake::PathSpace& space,
     const bake::RayOrigin eye{glm::dvec3(camera.eye.x, camera.eye.y, camera.eye.z) -
                               surfaces.scene().origin};
     for (std::uint32_t i = 0; surfaces.scene().volumes.empty() && i < picture.pixel.size(); ++i) {
-        const formats::Vec3 ray =
-            runtime::view_ray(camera, frame, i % camera.width + 0.5, i / camera.width + 0.5);
+        const std::uint32_t row = i / camera.width, column = i % camera.width;
+        const formats::Vec3 ray = runtime::view_ray(camera, frame, column + 0.5, row + 0.5);
         if (!surfaces.closest_hit(eye, {ray.x, ray.y, ray.z},
                                   std::numeric_limits<float>::infinity())) {
             picture.pixel[i] = {};

@@ -79,7 +79,7 @@ InwardPath trace_inward_path(const RayScene& rays, const BodyPoint& point, float
     const glm::vec3 aside =
         std::abs(n.x) < 0.5f ? glm::vec3(0, -n.z, n.y) : glm::vec3(-n.z, 0, n.x);
     const glm::vec3 tilt = 1e-3f * (0.8f * aside + 0.6f * glm::cross(n, aside));
-    const InwardPath one = follow(rays, point, glm::normalize(tilt - n), limit);
+    InwardPath one = follow(rays, point, glm::normalize(tilt - n), limit);
     if (path.open && !one.open) return one;
     InwardPath other = follow(rays, point, glm::normalize(-tilt - n), limit);
     if (path.open) return other;
