@@ -65,7 +65,7 @@ RelativeErrors sum_errors(const WatchedMesh& watched) {
     for (std::uint32_t t = 0; t < watched.mesh().size(); ++t) {
         if (!watched.is_watched(t)) continue;
         for (std::size_t c = 0; c < total.size(); ++c) {
-            sum.seen[c] += watched.weight(t) * watched.error(t)[c];
+            sum.seen[c] += watched.mesh().area(t) * watched.error(t)[c];
         }
     }
     for (std::size_t c = 0; c < total.size(); ++c) {
@@ -127,7 +127,7 @@ bool halve_worst(const RefineJob& job, const RelativeErrors& error, WatchedMesh&
             }
         }
         if (own <= limit) continue;
-        candidates.push_back({watched.weight(t) * own, t});
+        candidates.push_back({watched.mesh().area(t) * own, t});
         sum += candidates.back().weight;
     }
     // Alike ones come in their own order, whatever rounding makes of them.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -41,34 +40,10 @@ WatchedMesh::WatchedMesh(const formats::Scene& scene, const RayScene& rays,
     }
 }
 
-void WatchedMesh::find_boosts(const AreaTable& table) {
-    std::vector<double> area(mesh_.scene().primitives.size(), 0.0);
-    for (std::size_t i = 0; i < table.triangle.size(); ++i) {
-        area[table.triangle[i].primitive] +=
-            table.cumulative[i] - (i > 0 ? table.cumulative[i - 1] : 0);
-    }
-    const auto size = [](double a) { return std::sqrt(std::sqrt(a)); };
-    double sizes = 0;
-    for (const double a : area) {
-        sizes += size(a);
-    }
-    boost_.clear();
-    for (const double a : area) {
-        boost_.push_back(a > 0 ? std::max(1.0, size(a) / sizes / (a / table.total())) : 1.0);
-    }
-}
-
 void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     std::vector<std::uint32_t> all(mesh_.scene().primitives.size());
     std::iota(all.begin(), all.end(), 0u);
-    AreaTable table = make_area_table(mesh_.scene(), all);
-    area_ = table.total();
-    find_boosts(table);
-    double sum = 0, before = 0;
-    for (std::size_t i = 0; i < table.triangle.size(); ++i) {
-        sum += boost_[table.triangle[i].primitive] * (table.cumulative[i] - before);
-        before = std::exchange(table.cumulative[i], sum);
-    }
+    const AreaTable table = make_area_table(mesh_.scene(), all);
     watched_.assign(mesh_.size(), {});
     std::vector<ProxyPoint> points;
     std::vector<std::uint32_t> fresh;
@@ -86,17 +61,17 @@ void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     trace(points);
     look_at(fresh);
     total_ = unseen_ = {};
+    area_ = table.total();
     if (context_.cancelled()) return;
     measure(fresh);
-    const double share = table.total() / static_cast<double>(count);
+    const double share = area_ / static_cast<double>(count);
     for (const std::uint32_t triangle : fresh) {
         // A small triangle's point stands for others beside it, which nothing looks at.
         const Watched& own = watched_[triangle];
         const double area = share * static_cast<double>(own.looks.size());
-        add_scaled(unseen_, std::max(0.0, area - weight(triangle)), own.error);
+        add_scaled(unseen_, std::max(0.0, area - mesh_.area(triangle)), own.error);
         for (const Look& look : own.looks) {
-            add_scaled(total_, share / boost_[mesh_[triangle].primitive],
-                       square_beyond(rows_, solid_angle_, look.row, {}));
+            add_scaled(total_, share, square_beyond(rows_, solid_angle_, look.row, {}));
         }
     }
 }
@@ -123,7 +98,7 @@ void WatchedMesh::look_at_parts() {
     if (!context_.cancelled()) measure(parts_);
     for (const std::uint32_t t : joined_) {
         for (std::size_t c = 0; c < unseen_.size(); ++c) {
-            unseen_[c] = std::max(0.0, unseen_[c] - weight(t) * watched_[t].error[c]);
+            unseen_[c] = std::max(0.0, unseen_[c] - mesh_.area(t) * watched_[t].error[c]);
         }
     }
     parts_.clear();

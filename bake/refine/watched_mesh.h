@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/receivers/surface_points.h"
 #include "bake/refine/interpolation_error.h"
 #include "bake/refine/proxy_rows.h"
 #include "bake/refine/split_mesh.h"
@@ -40,12 +39,6 @@ class WatchedMesh {
     /// Mean square; 0 where nothing of it is seen.
     const ErrorColumns& error(std::uint32_t triangle) const { return watched_[triangle].error; }
     double area() const { return area_; }  ///< of all surfaces [m^2]
-    /// Area of a triangle [m^2], times how much more than its area its primitive counts: those
-    /// with less than their share, by the root of their width, do. Of a candle on a table a picture
-    /// shows the candle. All together weigh at most twice their area.
-    double weight(std::uint32_t triangle) const {
-        return mesh_.area(triangle) * boost_[mesh_[triangle].primitive];
-    }
     /// Square of all light over the surface [m^2].
     const ErrorColumns& total() const { return total_; }
     /// Square of the error [m^2] where triangles are not watched, by what the others err by.
@@ -72,7 +65,6 @@ class WatchedMesh {
         std::size_t operator()(const VertexEdge& edge) const;
     };
 
-    void find_boosts(const AreaTable& table);
     void trace(std::span<const ProxyPoint> points);
     ProxyPoint point_in(std::uint32_t triangle, glm::vec3 weight) const;
     void look_at(std::span<const std::uint32_t> triangles);
@@ -92,7 +84,6 @@ class WatchedMesh {
     std::vector<std::uint32_t> joined_;  ///< watched and not looked at yet
     std::vector<std::vector<std::uint32_t>> vertex_row_;
     std::unordered_map<VertexEdge, std::uint32_t, EdgeHash> middle_row_;
-    std::vector<double> boost_;  ///< of each primitive, 1 or more
     double area_ = 0;
     ErrorColumns total_{}, unseen_{};
     std::uint64_t traced_ = 0;
