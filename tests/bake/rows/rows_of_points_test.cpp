@@ -6,6 +6,7 @@
 
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/effects/rows/medium_rows.h"
 #include "bake/exchange/lamp_bounces.h"
 #include "bake/exchange/other_light.h"
 #include "bake/scene/inspect_scene.h"
@@ -15,6 +16,22 @@
 
 namespace opaline::bake {
 namespace {
+
+// A user who asks for few walks gets no more of them on the way; one who asks for many waits for
+// few in each step.
+TEST(CoarseKnobs, TakeNoMoreThanTheFileAndNoMoreThanAStepNeeds) {
+    const auto coarse = [](double walks, double epsilon) {
+        BakeOptions options;
+        options.quality = Quality::production;
+        options.set(kWalks, walks);
+        options.set(kEpsilon, epsilon);
+        return coarse_knobs(all_effects(), resolve_knobs(options).value(), 8);
+    };
+    EXPECT_EQ(coarse(20000, 1e-3)[kWalks], 20000);
+    EXPECT_EQ(coarse(5e6, 1e-3)[kWalks], kWalks.coarse);
+    EXPECT_EQ(coarse(5e6, 1e-5)[kEpsilon], kEpsilon.preset.front());
+    EXPECT_EQ(coarse(5e6, 1e-3).cubemap_size, 8u);
+}
 
 // Light in the place of the environment, by columns that stand for anything: a medium's answer is
 // linear in it. What is left of the subject is its study.
