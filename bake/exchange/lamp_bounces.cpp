@@ -44,9 +44,11 @@ Receiver place_outside(const BounceLight& surfaces, const Scatterer& s) {
                                           s.outside);
 }
 
-// What comes straight, of each lamp.
-std::vector<LampIrradiance> light_straight(const LampLight& lamps, const BounceLight& surfaces,
-                                           const Context& context, std::uint64_t& rays) {
+// Irradiance of each lamp at all scatterers, as `receive` has it at one place.
+template <class Receive>
+std::vector<LampIrradiance> light_scatterers(const LampLight& lamps, const BounceLight& surfaces,
+                                             const Context& context, std::uint64_t& rays,
+                                             Receive&& receive) {
     const std::vector<Scatterer>& scatterers = surfaces.transfer.scatterers;
     LampLight straight = lamps;
     straight.samples = std::min(lamps.samples, kRaysOfScatterer);
@@ -60,12 +62,12 @@ std::vector<LampIrradiance> light_straight(const LampLight& lamps, const BounceL
             for (std::size_t i = range.begin; i < range.end; ++i) {
                 const Scatterer& s = scatterers[i];
                 const Receiver outside = place_outside(surfaces, s);
-                const auto front = receive_straight(straight, outside, key_of(outside), traced);
+                const auto front = receive(straight, outside, traced);
                 for (std::size_t e = 0; e < lit.size(); ++e) {
                     lit[e].front[i] = front[e];
                 }
                 if (!lamps.scene.materials[s.material].sheet) continue;
-                const auto beyond = receive_straight(straight, s.beyond, key_of(s.beyond), traced);
+                const auto beyond = receive(straight, s.beyond, traced);
                 for (std::size_t e = 0; e < lit.size(); ++e) {
                     lit[e].beyond[i] = beyond[e];
                 }
@@ -74,6 +76,35 @@ std::vector<LampIrradiance> light_straight(const LampLight& lamps, const BounceL
         },
         [&](Range, std::uint64_t traced) { rays += traced; });
     return lit;
+}
+
+std::vector<LampIrradiance> light_straight(const LampLight& lamps, const BounceLight& surfaces,
+                                           const Context& context, std::uint64_t& rays) {
+    return light_scatterers(
+        lamps, surfaces, context, rays,
+        [](const LampLight& straight, const Receiver& at, std::uint64_t& traced) {
+            return receive_straight(straight, at, traced);
+        });
+}
+
+// Particles know nothing of it.
+void add_light_of_volumes(const LampLight& lamps, const BounceLight& surfaces,
+                          const Context& context, std::vector<LampIrradiance>& lit,
+                          std::uint64_t& rays) {
+    if (std::ranges::all_of(lamps.glow, [](const auto& own) { return !own; })) return;
+    const auto scattered =
+        light_scatterers(lamps, surfaces, context, rays,
+                         [](const LampLight& light, const Receiver& at, std::uint64_t& traced) {
+                             std::vector<glm::dvec3> sum(light.sources.size(), glm::dvec3(0));
+                             add_from_volumes(light, at, key_of(at), sum, traced);
+                             return sum;
+                         });
+    for (std::size_t e = 0; e < lit.size(); ++e) {
+        for (std::size_t i = 0; i < lit[e].front.size(); ++i) {
+            lit[e].front[i] += scattered[e].front[i];
+            lit[e].beyond[i] += scattered[e].beyond[i];
+        }
+    }
 }
 
 void add_caustic(std::span<const ParticleCell> cells, std::span<glm::dvec3> irradiance) {
@@ -176,6 +207,7 @@ LampBounces find_lamp_bounces(const LampLight& lamps, const BounceLight* surface
         add_caustic(arrived[e].caustic.front, lit[e].front);
         add_caustic(arrived[e].caustic.beyond, lit[e].beyond);
     }
+    add_light_of_volumes(lamps, *surfaces, context, lit, rays);
     BounceTree tree(surfaces->transfer.scatterers, lamps.scene.materials.size(), kColourBands);
     const Transfer dimmed = lamps.volumes == nullptr
                                 ? Transfer{}
@@ -198,7 +230,8 @@ std::vector<glm::dvec3> receive_light(const LampBounces& light, const LitPoint& 
                                       std::uint64_t key, std::uint64_t& rays) {
     LampLight straight = light.lamps;
     if (point.is_averaged) straight.samples = std::min(straight.samples, kRaysOfAveraged);
-    std::vector<glm::dvec3> total = receive_straight(straight, point.receiver, key, rays);
+    std::vector<glm::dvec3> total = receive_straight(straight, point.receiver, rays);
+    add_from_volumes(straight, point.receiver, key, total, rays);
     if (light.empty() || point.receiver.normal == glm::vec3(0)) return total;
     const BounceLight& surfaces = *light.surfaces;
     std::vector<NodeWeight> weights;

@@ -131,7 +131,7 @@ class LampView {
     void add_glow(const glm::dvec3& from, const glm::dvec3& direction, double reach,
                   const glm::dvec3& weight) {
         for (std::size_t lamp = 0; lamp < light_.glow.size(); ++lamp) {
-            if (light_.glow[lamp] == nullptr) continue;
+            if (!light_.glow[lamp]) continue;
             sum_[lamp] += std::numbers::pi * weight *
                           glow_radiance(*light_.glow[lamp], from, direction, reach);
         }

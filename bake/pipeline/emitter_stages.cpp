@@ -30,13 +30,14 @@ constexpr double kFlights = 1.5;
 // Rays that meet surfaces everywhere, over rays beside each other.
 constexpr double kIncoherent = 4;
 
-// Steps of a ray to volumes that glow, in times of steps of a depth: half across, and each with the
-// light of eight nodes.
+// Steps of a ray through volumes that glow or scatter light of lamps, in times of steps of a depth:
+// half across, and each with the light of eight nodes.
 double glow_steps(const formats::Scene& scene) {
     constexpr double kShare = 0.5, kOfNodes = 12;
     double voxels = 0;
     for (const formats::Volume& volume : scene.volumes) {
-        voxels = std::max(voxels, static_cast<double>(volume.emission.value.size()));
+        voxels = std::max({voxels, static_cast<double>(volume.emission.value.size()),
+                           static_cast<double>(volume.density.value.size())});
     }
     return kShare * kOfNodes * std::cbrt(voxels);
 }
@@ -165,7 +166,8 @@ formats::Status add_lamp_rows(const BakeInputs& bake, std::span<const Lamp> lamp
     }
     auto baked = bake_emitters(
         {bake.scene, bake.rays, bake.receivers, result.asset.primitives, lamps, result.knobs,
-         surfaces.get(), media, bake.textures, result.asset.volumes.view()},
+         surfaces.get(), media, bake.textures, result.asset.volumes.view(),
+         static_cast<std::uint32_t>(result.glowing_volumes.size())},
         context, result.stages);
     if (!baked) return std::move(baked).error();
     result.asset.emitters = std::move(baked->emitters);
@@ -211,11 +213,8 @@ void bill_lamps(const CostedBake& bake, std::span<PlanEntry> plan, Bill& bill) {
         for_each("media lit by emitters", {share * media->alone, share * media->shared});
     }
     for_each("light of emitters", {0, rays * ray});
-    const std::size_t first_volume = list_lamps(request.scene).size();
     for (PlanEntry* lamp : lamps) {
-        if (lamp->subject.index >= first_volume) {
-            bill.add({0, rays / 4 * glow_steps(request.scene) * kDensityStep}, lamp);
-        }
+        bill.add({0, rays / 4 * glow_steps(request.scene) * kDensityStep}, lamp);
     }
     bill.add({0, rays * ray});  // to surfaces that reflect, for all
     bill.open("self-check of emitters");

@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "bake/check/model_pairs.h"
-#include "bake/reference/reference_receivers.h"
 #include "runtime/volumes/volume_march.h"
+#include "tests/support/lamps_beside_paths.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"
 
@@ -97,26 +95,7 @@ TEST(GlowBake, FireLightsSurfacesAsTheReferenceSaysAndIsSwitchedByItsName) {
     EXPECT_NEAR(both[kMiddle].g, fire[kMiddle].g + panel[kMiddle].g, 1e-3f * both[kMiddle].g);
     EXPECT_EQ(dark[kMiddle].g, 0);
 
-    const auto reference = bake::make_reference_scene(scene, 2);
-    ASSERT_TRUE(reference);
-    std::vector<bake::ReferenceReceiver> receivers =
-        bake::choose_receivers(*reference, 60, 3, std::nullopt);
-    std::erase_if(receivers, [](const auto& receiver) { return receiver.primitive != 0; });
-    const formats::Environment black;
-    const bake::LightSampler sky = bake::make_light_sampler(black, glm::mat3(1.0f));
-    const bake::PathSpace space{*reference, sky, {.terms = formats::TermSet::emitters}};
-    const std::vector<formats::Rgb> lit{{1, 1, 1}, {1, 1, 1}};
-    bake::ModelCheckOptions options;
-    options.max_events = 6000000;
-    options.noise = 0.02;
-    const auto check = bake::check_light(
-        {&space, 1}, receivers,
-        bake::relight_receivers(
-            view, receivers,
-            {.vector = make_light("black", view.cubemap_size), .emitters = {.color = lit}}),
-        options, {});
-    ASSERT_TRUE(check);
-    const bake::MeanSquares sum = bake::sum_up(check->pairs);
+    const bake::MeanSquares sum = lamps_beside_paths(scene, result);
     EXPECT_LT(sum.noise(), 0.05);
     // Nodes of the smoke and what bounces between floor and smoke: as the file says of itself.
     EXPECT_LT(sum.rms_relative(), 0.08);

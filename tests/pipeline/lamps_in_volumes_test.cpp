@@ -2,10 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "bake/check/volumes/volume_error.h"
 #include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/volume_march.h"
+#include "tests/support/lamps_beside_paths.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/volumes.h"
 
@@ -84,6 +87,48 @@ TEST(LampsInVolumes, AGlowingPanelBesideSmokeIsAsTheReferenceSays) {
     scene.materials.resize(2);
     scene.materials[1].emission = {1, 1, 1};
     expect_as_traced(scene, bake_scene(scene, draft()), 0.3);
+}
+
+double stated_at_surfaces(const bake::BakeResult& result) {
+    const auto found =
+        std::ranges::find(result.error.by_effect, "emitters", &bake::ErrorReport::Part::name);
+    return found == result.error.by_effect.end() ? -1.0 : double{found->rms_relative};
+}
+
+// int E dA over black walls is all that the lamp sends out: smoke that absorbs nothing only sends
+// it elsewhere.
+TEST(LampsInVolumes, AllPowerOfALampInWhiteSmokeArrivesAtTheWallsAroundIt) {
+    constexpr std::uint32_t kCells = 6;
+    Scene scene = make_scene({make_cube(kCells, true)});
+    scene.materials[0].base_color = {0.001f, 0.001f, 0.001f};
+    scene.volumes.push_back(make_volume(make_ball_grid(0.6, 0.1), 5, 1, 0));
+    scene.lights.push_back(point_light("Bulb", {0.1f, 0, 0.05f}, 1));
+    const bake::BakeResult result = bake_scene(scene, draft());
+    const formats::AssetView view = result.asset.view();
+    ASSERT_EQ(view.emitters.blocks_of(0).size(), 1u);
+    double power = 0;
+    for (std::size_t v = 0; v < (kCells + 1) * (kCells + 1) * 6; ++v) {
+        const std::size_t i = v % (kCells + 1), j = v / (kCells + 1) % (kCells + 1);
+        const double share = (i % kCells == 0 ? 0.5 : 1) * (j % kCells == 0 ? 0.5 : 1);
+        const formats::Rgb row = block_value(view.emitters, view.emitters.blocks_of(0)[0], v);
+        power += share * 4 / (kCells * kCells) * std::numbers::pi * double{row.g};
+    }
+    EXPECT_NEAR(power, 4 * std::numbers::pi, 0.06 * 4 * std::numbers::pi);
+}
+
+TEST(LampsInVolumes, SmokeInABeamLightsTheFloorAsTheReferenceSays) {
+    Scene scene = smoke_above_a_floor();
+    scene.lights.push_back(point_light("Spot", {3, 0, 0}, 10));
+    scene.lights[0].type = formats::Light::Type::spot;
+    scene.lights[0].direction = {-1, 0, 0};
+    scene.lights[0].inner_cone = 0.2f;
+    scene.lights[0].outer_cone = 0.3f;
+    const bake::BakeResult result = bake_scene(scene, draft());
+    const bake::MeanSquares floor = lamps_beside_paths(scene, result);
+    EXPECT_LT(floor.noise(), 0.05);
+    EXPECT_LT(floor.rms_relative(), 0.12);
+    EXPECT_LT(std::abs(floor.bias()), 0.06);
+    EXPECT_NEAR(stated_at_surfaces(result), floor.rms_relative(), 0.05);
 }
 
 TEST(LampsInVolumes, EachIsSwitchedByItsNameBesideFire) {

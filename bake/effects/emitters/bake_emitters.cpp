@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -85,7 +84,6 @@ TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sour
             trace_particles(job.scene, job.rays, sources[e], coarse, run, context, rays);
         const bool has_caustic = has_light(first.caustic), has_more = is_bright(first);
         subtract(first.caustic, first.all);
-        // Scattered light of a volume that glows comes to points as well.
         if (cells && job.lamps[e].volume == formats::kNone) {
             traced.arrived[e].straight = cells->sum(first.all);
         }
@@ -104,13 +102,13 @@ TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sour
     return traced;
 }
 
-std::vector<std::unique_ptr<GlowLight>> make_glow_lights(const EmitterJob& job, unsigned threads) {
-    std::vector<std::unique_ptr<GlowLight>> glow(job.lamps.size());
-    for (std::size_t e = 0; e < glow.size(); ++e) {
+std::vector<std::optional<GlowLight>> make_glow_lights(const EmitterJob& job, unsigned threads) {
+    std::vector<std::optional<GlowLight>> glow;
+    for (std::uint32_t e = 0; e < job.lamps.size(); ++e) {
         const Lamp& lamp = job.lamps[e];
-        if (lamp.volume == formats::kNone) continue;
-        glow[e] = std::make_unique<GlowLight>(
-            make_glow_light(job.scene, lamp.volume, job.volumes, lamp.glow, threads));
+        const bool glows = lamp.volume != formats::kNone;
+        glow.push_back(make_glow_light(job.scene, lamp.volume, job.volumes,
+                                       glows ? lamp.glow : job.first_scattered + e, threads));
     }
     return glow;
 }
@@ -199,8 +197,12 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
             if (lamp.volume != formats::kNone) glowing.push_back(lamp.volume);
         }
         const std::vector<GlowingGrid> grids = make_glowing_grids(job.scene, glowing);
+        const bool scatters =
+            std::ranges::any_of(job.volumes.glow.record, [&](const formats::GlowRecord& record) {
+                return record.emitter >= job.first_scattered && record.terms > 0;
+            });
         return check_emitters({job.scene, job.rays, job.receivers, job.primitives, sources,
-                               baked.emitters.view(), &light, volumes, grids},
+                               baked.emitters.view(), &light, volumes, grids, scatters},
                               job.knobs.seed, context, rays);
     });
     if (context.cancelled()) return interrupted();

@@ -26,8 +26,10 @@ struct EmitterJob {
     const BounceLight* surfaces = nullptr;  ///< that send light on, with arrivals; null: none does
     LitMedia media{};  ///< none: rows of translucent primitives have no light of emitters
     const ScenePyramids* textures = nullptr;  ///< BakeInputs::textures
-    formats::VolumesView
-        volumes{};  ///< what is baked of the scene's volumes, as the lamps have them
+    /// What is baked of the scene's volumes. Their records of GLOW have volumes that glow by
+    /// Lamp::glow, and what is scattered of any other lamp e by first_scattered + e.
+    formats::VolumesView volumes{};
+    std::uint32_t first_scattered = 0;
 };
 
 struct BakedEmitters {

@@ -73,25 +73,28 @@ struct BackwardPath {
         return random_uniform(seed, RandomStage::true_gather, key, draws++);
     }
 
-    // Irradiance that comes straight: one point of the triangles, one shadow ray to each light.
-    glm::dvec3 straight(const Receiver& at, bool is_first) {
+    // What comes straight to a point, times share(unit direction to it): one point of the
+    // triangles, one shadow ray to each light.
+    template <class Share>
+    glm::dvec3 straight(const glm::vec3& at, bool is_first, const Share& share) {
         glm::dvec3 sum(0);
         for (const formats::Light& light : sources.lights) {
-            const ArrivingLight arriving = light_at(light, at.origin);
-            const float cosine = glm::dot(arriving.to_light, at.normal);
-            if (!(cosine > 0) || arriving.irradiance == formats::Rgb{}) continue;
+            const ArrivingLight arriving = light_at(light, at);
+            const double own = share(arriving.to_light);
+            if (own == 0 || arriving.irradiance == formats::Rgb{}) continue;
             ++rays;
-            if (is_hidden(check.rays, at.origin, arriving.to_light, arriving.distance)) continue;
-            const formats::Rgb e = cosine * arriving.irradiance;
-            sum += glm::dvec3(e.r, e.g, e.b) *
-                   volume_transmittance(check.volumes, glm::dvec3(at.origin),
-                                        glm::dvec3(arriving.to_light),
-                                        static_cast<double>(arriving.distance));
+            if (is_hidden(check.rays, at, arriving.to_light, arriving.distance)) continue;
+            const formats::Rgb& e = arriving.irradiance;
+            sum +=
+                own * glm::dvec3(e.r, e.g, e.b) *
+                volume_transmittance(check.volumes, glm::dvec3(at), glm::dvec3(arriving.to_light),
+                                     static_cast<double>(arriving.distance));
         }
-        return sources.triangles.empty() ? sum : sum + from_a_triangle(at, is_first);
+        return sources.triangles.empty() ? sum : sum + from_a_triangle(at, is_first, share);
     }
 
-    glm::dvec3 from_a_triangle(const Receiver& at, bool is_first) {
+    template <class Share>
+    glm::dvec3 from_a_triangle(const glm::vec3& at, bool is_first, const Share& share) {
         auto x = draw();
         if (is_first) std::copy_n(first.begin(), 3, x.begin());
         const double total = sources.cumulative.back();
@@ -102,26 +105,27 @@ struct BackwardPath {
         const double root = std::sqrt(static_cast<double>(x[1])), v = static_cast<double>(x[2]);
         const glm::dvec3 way = (1 - root) * triangle.corner[0] +
                                root * (1 - v) * triangle.corner[1] + root * v * triangle.corner[2] -
-                               glm::dvec3(at.origin);
+                               glm::dvec3(at);
         const double square = glm::dot(way, way), distance = std::sqrt(square);
         const double facing = -glm::dot(triangle.normal, way);
-        const double cosine = glm::dot(glm::dvec3(at.normal), way);
-        if (!(square > 0) || !(cosine > 0) || (facing <= 0 && !triangle.is_two_sided)) {
-            return glm::dvec3(0);
-        }
+        if (!(square > 0) || (facing <= 0 && !triangle.is_two_sided)) return glm::dvec3(0);
+        const double own = share(glm::vec3(way / distance));
+        if (own == 0) return glm::dvec3(0);
         ++rays;
-        if (is_hidden(check.rays, at.origin, glm::vec3(way / distance),
+        if (is_hidden(check.rays, at, glm::vec3(way / distance),
                       static_cast<float>(distance) * kRayEnd)) {
             return glm::dvec3(0);
         }
-        return cosine * std::abs(facing) / (square * square) * triangle.area / chance *
+        return own * std::abs(facing) / (square * distance) * triangle.area / chance *
                triangle.radiance *
-               volume_transmittance(check.volumes, glm::dvec3(at.origin), way / distance, distance);
+               volume_transmittance(check.volumes, glm::dvec3(at), way / distance, distance);
     }
 
     // What lamps bring to a vertex without diffuse bounces.
     glm::dvec3 from_lamps(const Receiver& at, bool is_first) {
-        glm::dvec3 sum = straight(at, is_first);
+        glm::dvec3 sum = straight(at.origin, is_first, [&](const glm::vec3& to_light) {
+            return std::max(0.0, static_cast<double>(glm::dot(to_light, at.normal)));
+        });
         if (check.known == nullptr || check.known->lamps.caustics.empty()) return sum;
         std::vector<glm::dvec3> caustic(check.sources.size(), glm::dvec3(0));
         add_caustics(check.known->lamps, at, caustic, rays);
@@ -199,6 +203,14 @@ struct BackwardPath {
             if (most < kRoulette) {
                 if (static_cast<double>(random()) * kRoulette >= most) return std::nullopt;
                 throughput *= kRoulette / most;
+            }
+            if (check.scatters_lamps) {
+                const glm::vec3 away(direction);
+                sum += std::numbers::pi * throughput *
+                       straight(glm::vec3(from), false, [&](const glm::vec3& to_light) {
+                           return static_cast<double>(
+                               eval_scaled(own.phase, glm::dot(away, to_light)));
+                       });
             }
             glm::vec3 turned(direction);
             throughput *= static_cast<double>(turn_walk(own.phase, turned, random).weight);

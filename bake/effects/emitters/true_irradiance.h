@@ -27,6 +27,7 @@ struct EmitterCheck {
     const LampBounces* known = nullptr;
     const DensitySpace* volumes = nullptr;   ///< between surfaces; null: none
     std::span<const GlowingGrid> glow = {};  ///< of them, those that are lamps
+    bool scatters_lamps = false;  ///< light of the other lamps, as the file has it in them
 };
 
 /// The glowing triangles of all lamps, by power, and all lights.
@@ -41,10 +42,10 @@ TrueSources collect_true_sources(std::span<const LampSources> lamps);
 /// Irradiance [lx] of a receiver from all lamps, by `paths` paths backward from it: a point of
 /// an emitter's surface and one of the lights at every vertex, and any number of bounces, diffuse
 /// or mirrored by metal; at media they end in what is known of these, or go on as their boundary
-/// mirrors them. In volumes they are scattered and gather the volumes' own light; light of other
-/// lamps is dimmed. It shares surfaces' colours with what it checks, but no elements, particles or
-/// form factors. `sources`: those of check.sources. (seed, key): key the numbers. `rays` counts
-/// those traced.
+/// mirrors them. In volumes they are scattered and gather the volumes' own light, and that of other
+/// lamps where volumes scatter it. It shares surfaces' colours with what it checks, but no
+/// elements, particles or form factors. `sources`: those of check.sources. (seed, key): key the
+/// numbers. `rays` counts those traced.
 glm::dvec3 trace_irradiance(const EmitterCheck& check, const TrueSources& sources,
                             const Receiver& receiver, std::uint32_t paths, std::uint64_t seed,
                             std::uint64_t key, std::uint64_t& rays);

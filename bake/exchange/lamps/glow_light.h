@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "bake/receivers/receiver.h"
 #include "bake/trace/density/density_space.h"
@@ -37,28 +39,36 @@ class BallDirections {
     double cap_ = 0;  // 1 - cosine of the cone's half angle; 0: spread by the cosine
 };
 
-/// Light that one volume sends out by itself, as the file holds it: seen directly, and scattered by
-/// all volumes. Immutable; refers to the file's arrays.
+/// Light of one lamp that comes from volumes, as the file holds it: what one of them sends out by
+/// itself, and what all of them scatter. Immutable; refers to the file's arrays.
 struct GlowLight {
+    /// A part of the volumes, and how much light it sends out, beside others.
+    struct Part {
+        Ball ball;
+        double power = 0;  ///< > 0
+    };
     std::unique_ptr<runtime::VolumeLight> light;  ///< `lit` refers to it
     runtime::LitVolumes lit;  ///< for rays in the scene's frame, not in the world
-    Ball own, all;            ///< around the emission; around emission and all scattering volumes
+    Ball all;                 ///< around all of it
+    std::vector<Part>
+        parts;  ///< the brightest ones; those that are dark, or too small, are not there
 };
 
-/// `glow`: number of the volume's light in the records of GLOW. Precondition: `volumes` holds the
-/// baked scene.volumes[volume], and outlives the result.
-GlowLight make_glow_light(const formats::Scene& scene, std::uint32_t volume,
-                          const formats::VolumesView& volumes, std::uint32_t glow,
-                          unsigned threads);
+/// `glow`: number of the lamp's light in the records of GLOW; `volume` of the scene sends it out,
+/// or kNone. Nothing where no volume has light of it. Precondition: `volumes` are those of the
+/// scene, and outlive the result.
+std::optional<GlowLight> make_glow_light(const formats::Scene& scene, std::uint32_t volume,
+                                         const formats::VolumesView& volumes, std::uint32_t glow,
+                                         unsigned threads);
 
-/// Radiance [nit] that a volume's own light has over `reach` [m] of a ray, at its beginning.
+/// Radiance [nit] that a lamp's light from volumes has over `reach` [m] of a ray, at its beginning.
 glm::dvec3 glow_radiance(const GlowLight& glow, const glm::dvec3& from, const glm::dvec3& direction,
                          double reach);
 
-/// Irradiance [W m^-2] of a receiver: rays in the cones of both balls, weighed by the balance
-/// heuristic, march through the volumes up to the first surface,
+/// Irradiance [W m^-2] of a receiver: rays in the cones of the ball around all volumes and of their
+/// parts, these by power over squared distance, march through the volumes up to the first surface,
 ///
-///     E = sum over rays of cos L(ray) / (N_own p_own + N_all p_all).
+///     E = sum over rays of cos L(ray) / (N_all p_all + N_parts p_parts)      .
 ///
 /// `turn`: two numbers in [0, 1) that shift the lattice of rays. `rays` counts those traced.
 glm::dvec3 glow_irradiance(const GlowLight& glow, const RayScene& surfaces,

@@ -18,21 +18,28 @@ constexpr std::uint32_t kLeastGlowRays = 16;
 }  // namespace
 
 std::vector<glm::dvec3> receive_straight(const LampLight& light, const Receiver& receiver,
-                                         std::uint64_t key, std::uint64_t& rays) {
+                                         std::uint64_t& rays) {
     std::vector<glm::dvec3> total(light.sources.size(), glm::dvec3(0));
     if (receiver.normal == glm::vec3(0)) return total;
     add_caustics(light, receiver, total, rays);
     for (std::size_t lamp = 0; lamp < total.size(); ++lamp) {
         total[lamp] += straight_irradiance(light.rays, light.sources[lamp], receiver, light.samples,
                                            rays, light.volumes);
-        if (lamp >= light.glow.size() || light.glow[lamp] == nullptr) continue;
+    }
+    return total;
+}
+
+void add_from_volumes(const LampLight& light, const Receiver& receiver, std::uint64_t key,
+                      std::span<glm::dvec3> total, std::uint64_t& rays) {
+    if (receiver.normal == glm::vec3(0)) return;
+    for (std::size_t lamp = 0; lamp < light.glow.size(); ++lamp) {
+        if (!light.glow[lamp]) continue;
         const auto turn = random_uniform(light.seed, RandomStage::gather_rays, key,
                                          ~static_cast<std::uint32_t>(lamp));
         total[lamp] +=
             glow_irradiance(*light.glow[lamp], light.rays, receiver,
                             std::max(kLeastGlowRays, light.samples / 4), {turn[0], turn[1]}, rays);
     }
-    return total;
 }
 
 void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,

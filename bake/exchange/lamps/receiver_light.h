@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -32,16 +31,20 @@ struct LampLight {
     std::span<const ElementLight> caustics = {};
     const ElementLayout* layout = nullptr;
     const DensitySpace* volumes = nullptr;  ///< that dim light on its way; null: none
-    /// Of each lamp, light of a volume; null, or an empty span: it is none.
-    std::span<const std::unique_ptr<GlowLight>> glow = {};
+    /// Of each lamp, its light from volumes: what one sends out, or all scatter. An empty span:
+    /// of no lamp.
+    std::span<const std::optional<GlowLight>> glow = {};
     const ScenePyramids* textures = nullptr;  ///< filtered where views see them; null: at points
 };
 
-/// Irradiance [lx] of a receiver from each lamp, straight and as metals and media pass it on. Light
-/// of volumes is gathered by a quarter as many rays, 16 at least. (seed, key): key the rotation of
-/// these rays.
+/// Irradiance [lx] of a receiver from each lamp, straight and as metals and media pass it on.
 std::vector<glm::dvec3> receive_straight(const LampLight& light, const Receiver& receiver,
-                                         std::uint64_t key, std::uint64_t& rays);
+                                         std::uint64_t& rays);
+
+/// Adds to the irradiance [lx] of each lamp what volumes send out or scatter of it, by a quarter as
+/// many rays as to lamps, 16 at least. (seed, key): key their rotation.
+void add_from_volumes(const LampLight& light, const Receiver& receiver, std::uint64_t key,
+                      std::span<glm::dvec3> total, std::uint64_t& rays);
 
 /// Adds the caustics of each lamp at a receiver [lx] to `total`: the mean over the elements around
 /// it.

@@ -52,7 +52,7 @@ std::unique_ptr<BakedFlame> bake_flame(formats::Scene scene) {
     auto volumes = *bake_volumes({scene, rays, plan_volumes(scene, knobs).layouts, knobs}, {}, log);
     auto baked = std::make_unique<BakedFlame>(
         BakedFlame{std::move(scene), std::move(rays), std::move(volumes), {}});
-    baked->light = make_glow_light(baked->scene, 0, baked->volumes.view(), 0, 1);
+    baked->light = *make_glow_light(baked->scene, 0, baked->volumes.view(), 0, 1);
     return baked;
 }
 
@@ -109,7 +109,7 @@ TEST(GlowLight, AnEdgeBeforeTheMiddleOfTheFlameHalvesIt) {
     scene.primitives.push_back(tests::make_quad({0, -0.5f, -1}, {1, 0, 0}, {0, 0, 2}));
     const auto flame = bake_flame(std::move(scene));
     const glm::dvec3 truth = 0.5 * flame_power() / (4 * std::numbers::pi);
-    expect_light(light_at_point(*flame, {{0, -1, 0}, {0, 1, 0}}), truth, 0.015);
+    expect_light(light_at_point(*flame, {{0, -1, 0}, {0, 1, 0}}, 4096), truth, 0.015);
 }
 
 TEST(GlowLight, SmokeBetweenAbsorbsByBeersLaw) {

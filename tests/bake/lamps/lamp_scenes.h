@@ -98,7 +98,7 @@ struct LampWorld {
     /// Without what surfaces reflect diffusely.
     glm::dvec3 at(const bake::Receiver& receiver) const {
         std::uint64_t traced = 0;
-        return bake::receive_straight(light(64), receiver, 1, traced)[0];
+        return bake::receive_straight(light(64), receiver, traced)[0];
     }
 
     Scene scene;
