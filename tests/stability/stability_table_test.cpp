@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -66,6 +68,46 @@ TEST(StabilityTable, TheFilesAreCurrent) {
         ADD_FAILURE() << folder << name << " is not current: copy " << name
                       << " from the folder that this test ran in";
     }
+}
+
+// Of a cell of README: "NaN" and "∞" are what they say.
+double number_of(const std::string& cell) {
+    return cell == "∞" ? HUGE_VAL : std::strtod(cell.c_str(), nullptr);
+}
+
+bool is_near(double a, double b, double tolerance) {
+    return (std::isnan(a) && std::isnan(b)) || a == b || std::abs(a - b) <= tolerance * std::abs(b);
+}
+
+// case | textbook's form | ours | exact | ours errs at most
+TEST(StabilityTable, TheRowsThatReadmeShowsAreInIt) {
+    const auto exact = read_exact_values();
+    const auto fields = stability_fields();
+    const std::string text = read_text(OPALINE_SOURCE_DIR "/README.md");
+    std::istringstream lines(text.substr(text.find("| hard case |")));
+    std::string line;
+    std::getline(lines, line);
+    std::getline(lines, line);
+    int shown = 0;
+    for (; std::getline(lines, line) && line.starts_with("| "); ++shown) {
+        static const std::regex cells(
+            "\\| (.*) \\| ([^|]*) \\| ([^|]*) \\| ([^|]*) \\| ([^|]*) \\|");
+        std::smatch cell;
+        ASSERT_TRUE(std::regex_match(line, cell, cells)) << line;
+        const double naive = number_of(cell[2]), ours = number_of(cell[3]),
+                     value = number_of(cell[4]), bound = number_of(cell[5]);
+        bool is_found = false;
+        for (const StabilityField& field : fields) {
+            for (const StabilityRow& row : field.rows) {
+                is_found =
+                    is_found || (row.bound == bound && is_near(row.naive, naive, 0.1) &&
+                                 is_near(row.ours, ours, 1e-5) &&
+                                 is_near(static_cast<double>(exact.at(row.exact)), value, 1e-5));
+            }
+        }
+        EXPECT_TRUE(is_found) << line;
+    }
+    EXPECT_EQ(shown, 10);
 }
 
 }  // namespace
