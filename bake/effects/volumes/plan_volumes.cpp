@@ -10,12 +10,14 @@
 #include <vector>
 
 #include "bake/effects/volumes/choose_method.h"
+#include "bake/effects/volumes/coarse_volume.h"
 #include "bake/effects/volumes/lamp_spacing.h"
 #include "bake/effects/volumes/largest_light.h"
 #include "bake/effects/volumes/node_albedo.h"
 #include "bake/effects/volumes/node_lattice.h"
 #include "bake/effects/volumes/volume_effects.h"
 #include "bake/effects/volumes/volume_knobs.h"
+#include "bake/effects/volumes/volume_parts.h"
 #include "bake/exchange/lamps/lamps.h"
 #include "bake/plan/plan_input.h"
 #include "bake/trace/density/density_space.h"
@@ -69,6 +71,30 @@ std::uint32_t spacing_of(const formats::Scene& scene, const formats::Volume& vol
         spacing /= 2;
     }
     return spacing;
+}
+
+// Joins voxels until the nodes are as few as the quality bakes.
+void join_for_quality(const formats::Scene& scene, const formats::Volume& volume,
+                      const Knobs& knobs, VolumeLayout& layout) {
+    constexpr std::uint32_t kMostJoined = 64;
+    const auto has_too_many = [&](const formats::Volume& own) {
+        return count_nodes_of_parts(scene, own, layout, knobs) > most_nodes(knobs.quality);
+    };
+    if (knobs[kVolumeSpacing] > 0 || !has_too_many(volume)) return;
+    formats::Scene alone;
+    do {
+        layout.joined *= 2;
+        alone.volumes = {join_voxels(volume, static_cast<int>(layout.joined))};
+        layout.spacing =
+            spacing_of(scene, alone.volumes[0], make_density_space(alone).volumes[0], knobs);
+    } while (has_too_many(alone.volumes[0]) && layout.joined < kMostJoined);
+}
+
+std::string tell_joined(const VolumeLayout& layout) {
+    const std::string edge = std::to_string(layout.joined);
+    return layout.joined == 1 ? ""
+                              : "; its voxels are joined to means of " + edge + " x " + edge +
+                                    " x " + edge + ", as this quality has too few points for more";
 }
 
 PlanEntry decide(std::string_view name, const Subject& subject, double bound, const Knobs& knobs) {
@@ -236,6 +262,8 @@ VolumePlan plan_volumes(const formats::Scene& scene, const Knobs& knobs) {
         if (glow > 0 || has_lamps) {
             scatter_glow_of_all(glow, has_lamps, most.once, phase, knobs, layout);
         }
+        if (layout.has_nodes()) join_for_quality(scene, volume, knobs, layout);
+        once.reason += tell_joined(layout);
         std::vector<PlanEntry> entries{std::move(once), std::move(often)};
         if (!volume.emission.empty()) {
             entries.push_back(decide_glow(volume, subject, knobs));

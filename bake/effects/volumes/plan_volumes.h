@@ -19,7 +19,8 @@ struct VolumeLayout {
     std::uint32_t volume = 0;       ///< index into Scene::volumes
     std::uint32_t once_terms = 0;   ///< K_s; 0: no light that was scattered once
     std::uint32_t often_terms = 0;  ///< K_m; 0: none that was scattered more often
-    std::uint32_t spacing = 1;      ///< voxels between nodes
+    std::uint32_t joined = 1;       ///< voxels along an edge that are one (coarse_volume.h)
+    std::uint32_t spacing = 1;      ///< of these between nodes
     std::uint32_t walks = 0;        ///< from each node; 0 where often_terms is
     std::uint32_t views = 0;        ///< directions of quasi-paths from each node; 0 likewise
     /// Automatic: the bake measures both ways (choose_method.h).

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "bake/effects/volumes/coarse_volume.h"
 #include "bake/effects/volumes/lamp_spacing.h"
 #include "bake/effects/volumes/node_lattice.h"
 #include "bake/effects/volumes/volume_knobs.h"
@@ -105,21 +106,38 @@ formats::Volume make_part(const formats::Volume& whole, Grid&& density) {
 
 }  // namespace
 
+std::size_t count_nodes_of_parts(const formats::Scene& scene, const formats::Volume& volume,
+                                 const VolumeLayout& layout, const Knobs& knobs) {
+    const std::vector<Part> parts = part_volume(scene, volume, &layout, knobs);
+    if (parts.empty()) return count_nodes(volume.density, layout.spacing);
+    std::size_t nodes = 0;
+    for (const Part& part : parts) {
+        nodes += count_nodes(part.density, part.spacing);
+    }
+    return nodes;
+}
+
 VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayout> layouts,
                          const Knobs& knobs) {
     constexpr std::size_t kMostDrawn = 4;  // by OpenGL (runtime/gl) and by pages
     std::size_t count = layouts.size();
     std::vector<std::vector<Part>> parts;
+    std::vector<std::optional<formats::Volume>> joined(scene.volumes.size());
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
-        parts.push_back(count < kMostDrawn
-                            ? part_volume(scene, scene.volumes[v], find_layout(layouts, v), knobs)
-                            : std::vector<Part>());
+        const VolumeLayout* const layout = find_layout(layouts, v);
+        if (layout != nullptr && layout->joined > 1) {
+            joined[v] = join_voxels(scene.volumes[v], static_cast<int>(layout->joined));
+        }
+        const formats::Volume& volume = joined[v] ? *joined[v] : scene.volumes[v];
+        parts.push_back(count < kMostDrawn ? part_volume(scene, volume, layout, knobs)
+                                           : std::vector<Part>());
         if (!parts.back().empty() && count + parts.back().size() - 1 > kMostDrawn) {
             parts.back().clear();
         }
         count += parts.back().empty() ? 0 : parts.back().size() - 1;
     }
-    if (std::ranges::all_of(parts, &std::vector<Part>::empty)) {
+    if (std::ranges::all_of(parts, &std::vector<Part>::empty) &&
+        std::ranges::none_of(joined, &std::optional<formats::Volume>::has_value)) {
         return {std::nullopt, {layouts.begin(), layouts.end()}};
     }
     VolumeParts found;
@@ -137,11 +155,12 @@ VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayo
     // Walks collide in volumes that are not baked, too.
     for (std::uint32_t v = 0; v < scene.volumes.size(); ++v) {
         const VolumeLayout* const layout = find_layout(layouts, v);
+        const formats::Volume& volume = joined[v] ? *joined[v] : scene.volumes[v];
         if (parts[v].empty()) {
-            add(formats::Volume(scene.volumes[v]), layout, layout != nullptr ? layout->spacing : 1);
+            add(formats::Volume(volume), layout, layout != nullptr ? layout->spacing : 1);
         }
         for (Part& part : parts[v]) {
-            add(make_part(scene.volumes[v], std::move(part.density)), layout, part.spacing);
+            add(make_part(volume, std::move(part.density)), layout, part.spacing);
         }
     }
     return found;

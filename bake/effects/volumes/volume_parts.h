@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,10 +11,10 @@
 
 namespace opaline::bake {
 
-/// Volumes as they are baked. A volume with dense and thin places is divided into several volumes
-/// with their own node spacing. Densities are linear between voxels, so the parts add up to the
-/// whole everywhere, and light blends between the nodes of two parts as their densities do, without
-/// a seam (README.md, "Parts").
+/// Volumes as they are baked, with voxels joined as their layouts say. A volume with dense and thin
+/// places is divided into several volumes with their own node spacing. Densities are linear between
+/// voxels, so the parts add up to the whole everywhere, and light blends between the nodes of two
+/// parts as their densities do, without a seam (README.md, "Parts").
 struct VolumeParts {
     std::optional<formats::Scene> scene;  ///< the parts, nothing else; nothing: as given
     std::vector<VolumeLayout> layouts;    ///< VolumeLayout::volume counts among these
@@ -30,5 +31,9 @@ struct VolumeParts {
 /// that OpenGL draws.
 VolumeParts part_volumes(const formats::Scene& scene, std::span<const VolumeLayout> layouts,
                          const Knobs& knobs);
+
+/// Nodes of a volume in its parts, or whole. `layout`: of it, with its spacing.
+std::size_t count_nodes_of_parts(const formats::Scene& scene, const formats::Volume& volume,
+                                 const VolumeLayout& layout, const Knobs& knobs);
 
 }  // namespace opaline::bake
