@@ -1,6 +1,6 @@
 // opaline_properties COUNT FIRST: judges the scenes of so many seeds, each in a process of its own,
-// and shrinks those that fail; opaline_properties "SCENE": one that a line of it describes. Prints
-// a line for each fault; exits 1 where there is one.
+// and shrinks those that fail; opaline_properties SCENE: one that a line of it, or a seed, names.
+// Prints a line for each fault; exits 1 where there is one.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,12 +22,9 @@ namespace {
 constexpr rlim_t kMostSeconds = 100;      // of the processor for a scene; then it hangs
 constexpr unsigned kMostPatience = 3000;  // of the clock, for locks
 
-enum class Question { physics, threads };
-
-std::string judge(const SceneWords& scene, Question question) {
+std::string judge(const SceneWords& scene) {
     try {
-        const auto fault =
-            question == Question::physics ? find_fault(scene) : find_fault_of_threads(scene);
+        const auto fault = find_fault(scene);
         return fault ? fault->property + ": " + fault->detail : "";
     } catch (const std::exception& e) {
         return std::string("throws: ") + e.what();
@@ -35,7 +32,7 @@ std::string judge(const SceneWords& scene, Question question) {
 }
 
 // The fault of a scene, crashes and hangs among them; empty: none.
-std::string judge_apart(const SceneWords& scene, Question question) {
+std::string judge_apart(const SceneWords& scene) {
     std::array<int, 2> pipe_ends{};
     if (::pipe(pipe_ends.data()) != 0) std::abort();
     const pid_t child = ::fork();
@@ -43,7 +40,7 @@ std::string judge_apart(const SceneWords& scene, Question question) {
         const rlimit limit{kMostSeconds, kMostSeconds};
         ::setrlimit(RLIMIT_CPU, &limit);
         ::alarm(kMostPatience);
-        const std::string answer = judge(scene, question);
+        const std::string answer = judge(scene);
         const bool is_sent = ::write(pipe_ends[1], answer.data(), answer.size()) >= 0;
         std::_Exit(is_sent ? 0 : 1);
     }
@@ -68,33 +65,34 @@ std::string property_of(const std::string& fault) {
 }
 
 bool judge_seed(std::uint64_t seed) {
-    // Few scenes are baked twice: of threads the stages have tests of their own.
-    constexpr std::uint64_t kEachByThreads = 8;
-    const Question question = seed % kEachByThreads == 0 ? Question::threads : Question::physics;
     const SceneWords scene = random_scene(seed);
-    const std::string fault = judge_apart(scene, question);
+    const std::string fault = judge_apart(scene);
     if (fault.empty()) return true;
     std::printf("seed %llu: %s\n  %s\n", static_cast<unsigned long long>(seed), fault.c_str(),
                 describe(scene).c_str());
     std::fflush(stdout);
     const SceneWords least = shrink(scene, [&](const SceneWords& smaller) {
-        return property_of(judge_apart(smaller, question)) == property_of(fault);
+        return property_of(judge_apart(smaller)) == property_of(fault);
     });
-    std::printf("  %s\n  %s\n", judge_apart(least, question).c_str(), describe(least).c_str());
+    std::printf("  %s\n  %s\n", judge_apart(least).c_str(), describe(least).c_str());
     std::fflush(stdout);
     return false;
 }
 
 int run(int count, char** argument) {
     if (count == 2) {
-        std::printf("%s", inspect(parse_scene(argument[1])).c_str());
+        const std::string text = argument[1];
+        const SceneWords scene =
+            text.find(';') == text.npos ? random_scene(std::stoull(text)) : parse_scene(text);
+        std::printf("%s\n%s", describe(scene).c_str(), inspect(scene).c_str());
         std::fflush(stdout);
-        const std::string fault = judge_apart(parse_scene(argument[1]), Question::physics);
+        const std::string fault = judge_apart(scene);
         std::printf("%s\n", fault.empty() ? "right" : fault.c_str());
         return fault.empty() ? 0 : 1;
     }
     if (count != 3) {
-        std::fprintf(stderr, "usage: %s COUNT FIRST_SEED, or SCENE\n", argument[0]);
+        std::fprintf(stderr, "usage: %s COUNT FIRST_SEED, or a scene's line or seed\n",
+                     argument[0]);
         return 2;
     }
     int faults = 0;

@@ -13,17 +13,16 @@ struct Fault {
     std::string detail;
 };
 
-/// Bakes the scene, coarsely, and judges the result. Properties:
+/// Bakes the scene, coarsely and as often as it says, and judges the result. Properties:
 ///   bakes      no error, whatever the scene;
 ///   finite     under every light, a black one and texels of 1e30 among them, nothing is NaN,
 ///              infinite or negative; under black nothing shines but lamps;
 ///   bounds     lights of 0 <= L <= 1 and black lamps of radiance 1 make nothing brighter than 1;
 ///   furnace    where nothing absorbs, an even light of 1 and such lamps make all that is seen 1,
-///              within the error that the bake states.
+///              within the error that the bake states;
+///   linear     lights that are added up or scaled add up what they show, or scale it;
+///   again      what a second bake shows (bake_again.h).
 std::optional<Fault> find_fault(const SceneWords& words);
-
-/// Whether 1 and 3 threads make the same bytes ("threads").
-std::optional<Fault> find_fault_of_threads(const SceneWords& words);
 
 /// What a look at one scene needs: slow stages, and what each primitive shows under even light.
 std::string inspect(const SceneWords& words);

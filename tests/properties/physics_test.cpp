@@ -15,7 +15,7 @@ class ScenesByChance : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(ScenesByChance, KeepToPhysics) {
     const SceneWords scene = random_scene(GetParam());
-    expect_right(scene, GetParam() % 8 == 0 ? find_fault_of_threads(scene) : find_fault(scene));
+    expect_right(scene, find_fault(scene));
 }
 
 // Cheap ones: twenty seconds together.

@@ -105,6 +105,7 @@ SceneWords random_scene(std::uint64_t seed) {
     scene.turned = chance.one_in(3);
     // Farther away floats are coarser than a thousandth of things, which the importer says.
     if (chance.one_in(4)) scene.distance = std::min(1e7, scene.scale * chance.log_even(1, 1e4));
+    scene.again = static_cast<Again>(1 + chance.below(static_cast<int>(Again::darker)));
     return scene;
 }
 

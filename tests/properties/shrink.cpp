@@ -40,6 +40,8 @@ bool make_plain(SceneWords& scene, const Fails& fails) {
         scene, fails, [](Words& s, std::size_t) -> double& { return s.scale; }, 0, 1);
     any |= simplify<bool>(
         scene, fails, [](Words& s, std::size_t) -> bool& { return s.turned; }, 0, false);
+    any |= simplify<Again>(
+        scene, fails, [](Words& s, std::size_t) -> Again& { return s.again; }, 0, Again::never);
     for (std::size_t i = 0; i < scene.things.size(); ++i) {
         any |= simplify<Flaw>(
             scene, fails, [](Words& s, std::size_t t) -> Flaw& { return s.things[t].flaw; }, i,

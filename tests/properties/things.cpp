@@ -18,10 +18,17 @@ constexpr std::array<std::string_view, 7> kFlaws{"whole", "slivers", "twice",   
 constexpr std::array<std::string_view, 7> kPlaces{"apart",   "face", "edge",  "corner",
                                                   "overlap", "same", "inside"};
 
+constexpr std::array<std::string_view, 9> kAgains{
+    "never", "threads", "scaled", "turned", "mirrored", "reordered", "unwelded", "split", "darker"};
+
 template <class Enum, std::size_t N>
 Enum read_word(std::istream& in, const std::array<std::string_view, N>& words) {
     std::string word;
     in >> word;
+    if (!word.empty() && word.back() == ';') {  // the last word before the first thing
+        word.pop_back();
+        in.putback(';');
+    }
     for (std::size_t i = 0; i < N; ++i) {
         if (words[i] == word) return static_cast<Enum>(i);
     }
@@ -34,6 +41,7 @@ std::string describe(const SceneWords& scene) {
     std::ostringstream out;
     out.precision(10);
     out << scene.scale << ' ' << scene.distance << ' ' << scene.turned;
+    if (scene.again != Again::never) out << ' ' << kAgains[static_cast<std::size_t>(scene.again)];
     for (const Thing& t : scene.things) {
         out << "; " << kKinds[static_cast<std::size_t>(t.kind)] << ' '
             << kShapes[static_cast<std::size_t>(t.shape)] << ' '
@@ -49,6 +57,7 @@ SceneWords parse_scene(const std::string& text) {
     std::istringstream in(text);
     SceneWords scene;
     in >> scene.scale >> scene.distance >> scene.turned;
+    if (in >> std::ws && in.peek() != ';') scene.again = read_word<Again>(in, kAgains);
     for (char semicolon = 0; in >> semicolon;) {
         Thing t;
         t.kind = read_word<ThingKind>(in, kKinds);

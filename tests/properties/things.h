@@ -51,11 +51,25 @@ struct Thing {
     double roughness = 0;
 };
 
+/// How a scene is baked once more (bake_again.h).
+enum class Again : std::uint8_t {
+    never,
+    threads,    // by three threads
+    scaled,     // by 1024 or 1/1024, a power of two: roundings stay the same
+    turned,     // by a third of a turn, the light with it
+    mirrored,   // the light with it
+    reordered,  // things, materials and volumes from the last to the first
+    unwelded,   // each triangle has vertices of its own
+    split,      // each mesh in two primitives
+    darker      // all absorb more
+};
+
 /// A scene in words: text and back. All lengths are multiplied by `scale` [m] and all is `distance`
 /// [m] away from the world's origin.
 struct SceneWords {
     double scale = 1, distance = 0;
     bool turned = false;  ///< the scene as a whole, so that what touches is off by roundings
+    Again again = Again::never;
     std::vector<Thing> things;
 };
 
@@ -64,7 +78,7 @@ std::string describe(const SceneWords& scene);
 /// Throws std::invalid_argument where the text is no scene.
 SceneWords parse_scene(const std::string& text);
 
-/// The scene of a seed: 1 to 12 things. Half of all absorb nothing.
+/// The scene of a seed: 1 to 12 things, baked twice. Half of all absorb nothing.
 SceneWords random_scene(std::uint64_t seed);
 
 /// Whether light may get lost in it: by absorption, at the backs of surfaces, through holes.

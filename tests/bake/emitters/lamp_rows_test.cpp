@@ -71,6 +71,38 @@ TEST(LampRows, ThinWallsShowLightOnBothSides) {
     EXPECT_NEAR(rows[0][1].b, 0.1f * E, 1e-3f);
 }
 
+// All light that arrives at the square of one primitive from a lamp that covers another one's: a
+// large floor, a small board that leans over it, and a wall beside both.
+double arriving_flux(std::uint32_t lamp, std::uint32_t at) {
+    constexpr std::uint32_t kCells = 8;
+    formats::Scene scene;
+    const auto radiance = [&](std::uint32_t p) { return p == lamp ? 1.0f : 0.0f; };
+    tests::add_surface(scene, tests::make_quad({0, 0, 0}, {2, 0, 0}, {0, 2, 0}, kCells), 0.6f,
+                       radiance(0));
+    const glm::vec3 along(0, 0.8f, 0.3f), across(0.4f, 0, 0.2f);
+    tests::add_surface(scene, tests::make_quad({1, 0.6f, 0.5f}, along, across, kCells), 0.3f,
+                       radiance(1));
+    tests::add_surface(scene, tests::make_quad({-0.2f, 0, 0.2f}, {0, 2, 0}, {0, 0, 1}, kCells),
+                       0.8f);
+    const formats::Primitive& square = scene.primitives[at];
+    const double area = surface_area(square);
+    const auto rows = tests::BouncedLamps(std::move(scene), 0.02, {100000}).rows(at);
+    double mean = 0;
+    for (std::size_t r = 0; r < rows.at(0).size(); ++r) {
+        const std::size_t i = r % (kCells + 1), j = r / (kCells + 1);
+        const double share = (i % kCells == 0 ? 0.5 : 1) * (j % kCells == 0 ? 0.5 : 1);
+        mean += share * double{rows[0][r].g} / (kCells * kCells);
+    }
+    return std::numbers::pi * mean * area;
+}
+
+// Straight and by way of the wall and of each other.
+TEST(LampRows, TwoFlatThingsSendEachOtherAsMuch) {
+    const double down = arriving_flux(1, 0), up = arriving_flux(0, 1);
+    EXPECT_GT(down, 0.1);
+    EXPECT_NEAR(up / down, 1, 0.01) << up << " up, " << down << " down";
+}
+
 TEST(LampRows, LampsDoNotMixAndThreadsDoNotMatter) {
     formats::Scene scene;
     tests::add_surface(scene, tests::make_cube(2, true), 0.5f);
