@@ -101,13 +101,16 @@ std::optional<Fault> find_nonlinear(const Shown& a, double factor, const Shown& 
     std::vector<double> expected;
     for_each_value(a, [&](double value, const std::string&) { expected.push_back(value); });
     std::size_t i = 0;
-    for_each_value(b, [&](double value, const std::string&) { expected[i++] += factor * value; });
+    for_each_value(b, [&](double value, const std::string&) {
+        double& sum = expected[i++];
+        sum = sum > 0 && value > 0 ? sum + factor * value : -1;
+    });
     const double most = expected.empty() ? 0 : std::ranges::max(expected);
     std::optional<Fault> fault;
     i = 0;
     for_each_value(both, [&](double value, const std::string& where) {
         const double sum = expected[i++];
-        if (fault || std::abs(value - sum) <= kRounding * most) return;
+        if (fault || sum < 0 || std::abs(value - sum) <= kRounding * most) return;
         fault = {"linear", fmt::format("{} instead of {}: {}", value, sum, where)};
     });
     return fault;

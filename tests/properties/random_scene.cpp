@@ -55,6 +55,7 @@ Shape draw_shape(ThingKind kind, bool lossless, Chance& chance) {
         case ThingKind::volume:
         case ThingKind::glow:
         case ThingKind::bulb:
+        case ThingKind::copy:
             break;
     }
     return chance.one_of({Shape::box, Shape::ball});
@@ -106,6 +107,10 @@ SceneWords random_scene(std::uint64_t seed) {
     // Farther away floats are coarser than a thousandth of things, which the importer says.
     if (chance.one_in(4)) scene.distance = std::min(1e7, scene.scale * chance.log_even(1, 1e4));
     scene.again = static_cast<Again>(1 + chance.below(static_cast<int>(Again::darker)));
+    constexpr int kEachCopied = 6;
+    for (std::size_t i = 1; i < scene.things.size(); ++i) {
+        if (chance.one_in(kEachCopied)) scene.things[i].kind = ThingKind::copy;
+    }
     return scene;
 }
 

@@ -8,9 +8,9 @@
 namespace opaline::tests {
 namespace {
 
-constexpr std::array<std::string_view, 13> kKinds{
+constexpr std::array<std::string_view, 14> kKinds{
     "opaque", "metal", "coat",   "double_sided", "pane", "sheet", "medium",
-    "clear",  "core",  "volume", "glow",         "lamp", "bulb"};
+    "clear",  "core",  "volume", "glow",         "lamp", "bulb",  "copy"};
 constexpr std::array<std::string_view, 7> kShapes{"box", "ball",  "quad",    "plate",
                                                   "cup", "shell", "triangle"};
 constexpr std::array<std::string_view, 7> kFlaws{"whole", "slivers", "twice",     "no_area",
@@ -92,6 +92,7 @@ bool absorbs(const Thing& thing) {
             break;
         case ThingKind::lamp:
         case ThingKind::glow:
+        case ThingKind::copy:
             return false;  // in balance with light of radiance 1
         case ThingKind::bulb:
             return true;

@@ -19,7 +19,8 @@ enum class ThingKind : std::uint8_t {
     volume,
     glow,  // a volume that glows by its absorption
     lamp,  // a black surface of radiance 1
-    bulb   // a point light
+    bulb,  // a point light
+    copy   // of the one before it: the same mesh and material, as by another node
 };
 enum class Shape : std::uint8_t { box, ball, quad, plate, cup, shell, triangle };
 enum class Flaw : std::uint8_t {
