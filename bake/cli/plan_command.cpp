@@ -33,8 +33,8 @@ std::vector<formats::Diagnostic> describe_media_faults(const formats::Scene& sce
     std::vector<bake::BodySurface> surfaces;
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         if (scene.materials[m].medium) {
-            surfaces.push_back(
-                {m, 0, facts.material[m].open_edges, bake::find_flaps(scene, m).pairs});
+            const bake::Flaps flaps = bake::find_flaps(scene, m);
+            surfaces.push_back({m, 0, facts.material[m].open_edges, flaps.pairs, flaps.repeats});
         }
     }
     return bake::describe_faults(scene, surfaces);

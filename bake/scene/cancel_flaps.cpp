@@ -41,6 +41,7 @@ double area_of(const BodyShells& body, std::uint32_t triangle) {
 Flaps find_flaps(const formats::Scene& scene, std::uint32_t material) {
     Flaps flaps;
     flaps.first_index.resize(scene.primitives.size());
+    std::vector<std::vector<std::uint32_t>> repeated(scene.primitives.size());
     double area = 0, cancelled = 0;
     // Part by part, which fit into the cache; what is apart has no corners in common.
     for (const std::vector<std::uint32_t>& part : list_parts_apart(scene, material)) {
@@ -56,9 +57,9 @@ Flaps find_flaps(const formats::Scene& scene, std::uint32_t material) {
             return std::tie(a.corner, a.is_even, a.triangle) <
                    std::tie(b.corner, b.is_even, b.triangle);
         });
-        const auto take = [&](std::uint32_t triangle) {
-            const BodyTriangle& t = body.triangle[triangle];
-            flaps.first_index[t.primitive].push_back(t.first_index);
+        const auto take = [&](const Facet& facet, std::vector<std::vector<std::uint32_t>>& to) {
+            const BodyTriangle& t = body.triangle[facet.triangle];
+            to[t.primitive].push_back(t.first_index);
         };
         for (std::size_t begin = 0, end = 0; begin < facets.size(); begin = end) {
             std::size_t odd = 0;
@@ -67,19 +68,27 @@ Flaps find_flaps(const formats::Scene& scene, std::uint32_t material) {
             }
             const std::size_t pairs = std::min(odd, end - begin - odd);
             for (std::size_t i = 0; i < pairs; ++i) {
-                take(facets[begin + i].triangle);
-                take(facets[begin + odd + i].triangle);
+                take(facets[begin + i], flaps.first_index);
+                take(facets[begin + odd + i], flaps.first_index);
                 cancelled += 2 * area_of(body, facets[begin].triangle);
             }
             flaps.pairs += pairs;
+            // Of the others, which face one way, the first one stays.
+            const std::size_t others = odd > pairs ? begin + pairs : begin + odd + pairs,
+                              others_end = odd > pairs ? begin + odd : end;
+            for (std::size_t i = others + 1; i < others_end; ++i) {
+                take(facets[i], repeated);
+                ++flaps.repeats;
+            }
         }
     }
     if (cancelled > 0.5 * area) {
-        flaps = {};
-        flaps.first_index.resize(scene.primitives.size());
-        return flaps;
+        flaps.first_index.assign(scene.primitives.size(), {});
+        flaps.pairs = 0;
     }
-    for (std::vector<std::uint32_t>& first : flaps.first_index) {
+    for (std::size_t p = 0; p < repeated.size(); ++p) {
+        std::vector<std::uint32_t>& first = flaps.first_index[p];
+        first.insert(first.end(), repeated[p].begin(), repeated[p].end());
         std::ranges::sort(first);
     }
     return flaps;

@@ -287,13 +287,13 @@ OrientedBodies orient_bodies(const Scene& scene) {
     for (std::uint32_t m = 0; m < scene.materials.size(); ++m) {
         if (!scene.materials[m].medium) continue;
         const Flaps flaps = find_flaps(latest(scene, result), m);
-        if (flaps.pairs > 0) {
+        if (flaps.pairs + flaps.repeats > 0) {
             remove_flaps(flaps, changed(scene, result));
         }
         BodyShells body = make_body_shells(latest(scene, result), m);
         if (body.triangle.empty()) continue;
         turn_shells_outward(body);
-        BodySurface surface{m, 0, body.open_edges, flaps.pairs};
+        BodySurface surface{m, 0, body.open_edges, flaps.pairs, flaps.repeats};
         surface.turned = apply_turns(body, scene, result);
         result.surfaces.push_back(surface);
     }
@@ -320,6 +320,14 @@ std::vector<formats::Diagnostic> describe_faults(const Scene& scene,
                 "and were left out: " +
                     std::to_string(surface.flaps),
                 "remove such pairs, or give the part a thickness"));
+        }
+        if (surface.repeats > 0) {
+            warnings.push_back(formats::make_warning(
+                scene.source, where,
+                std::to_string(surface.repeats) +
+                    " triangles of the medium's surface lie on others and face the same way; they "
+                    "were left out",
+                "remove faces and objects that are there twice"));
         }
         if (surface.open_edges > 0) {
             warnings.push_back(formats::make_warning(

@@ -16,6 +16,7 @@ struct BodySurface {
     std::uint64_t turned = 0;      ///< triangles that faced inward
     std::uint64_t open_edges = 0;  ///< edges at which the surface ends
     std::uint64_t flaps = 0;       ///< pairs of triangles that bound nothing, removed
+    std::uint64_t repeats = 0;     ///< triangles that lie on another one, removed
 };
 
 /// Bodies whose triangles all face outward and bound them.

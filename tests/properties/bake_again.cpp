@@ -81,11 +81,11 @@ Apart measure(const Comparison& pairs, bool only_brighter) {
     return apart;
 }
 
-// Most bakes draw the same rays again: what then differs is roundings, and what few rays change by
-// them. Turned ones draw others.
+// Where the order and the place of things stay, bakes draw the same rays again: what then differs
+// is roundings, and what few rays change by them.
 double allowed(Again again, double stated) {
-    const bool same_rays = again == Again::scaled || again == Again::reordered ||
-                           again == Again::unwelded || again == Again::split;
+    const bool same_rays =
+        again == Again::scaled || again == Again::unwelded || again == Again::split;
     constexpr double kRoundings = 0.02, kNoise = 0.09;
     return same_rays ? std::max(0.1 * stated, kRoundings) : 1.5 * std::max(stated, kNoise);
 }

@@ -72,10 +72,32 @@ TEST(CancelFlaps, OfThreeOnOneAnotherOneIsLeftToFaceTheWayOfTheMost) {
     EXPECT_EQ(bodies.surfaces[0].open_edges, 0u);
 }
 
-TEST(CancelFlaps, TrianglesThatFaceOneWayOrOnlyShareAnEdgeStay) {
-    Primitive twice = tests::make_sphere(1);
-    twice.index.insert(twice.index.end(), twice.index.begin(), twice.index.begin() + 3);
-    EXPECT_EQ(find_flaps(wax_scene({twice}), 0).pairs, 0u);
+// Faces that were copied, and an object that was: as many triangles as without them, one shell.
+TEST(CancelFlaps, WhatIsThereTwiceIsThereOnce) {
+    const Primitive ball = tests::make_sphere(1);
+    Primitive half_twice = ball;
+    half_twice.index.insert(
+        half_twice.index.end(), ball.index.begin(),
+        ball.index.begin() + static_cast<std::ptrdiff_t>(ball.index.size()) / 2);
+    for (const Scene& scene : {wax_scene({half_twice}), wax_scene({ball, ball, ball})}) {
+        const OrientedBodies bodies = orient_bodies(scene);
+        ASSERT_TRUE(bodies.scene);
+        EXPECT_EQ(bodies.scene->primitives[0].index, ball.index);
+        std::size_t left = 0;
+        for (const Primitive& p : bodies.scene->primitives) {
+            left += p.index.size();
+        }
+        EXPECT_EQ(left, ball.index.size());
+        EXPECT_EQ(bodies.surfaces[0].turned, 0u);
+        EXPECT_EQ(bodies.surfaces[0].open_edges, 0u);
+        EXPECT_EQ(bodies.surfaces[0].flaps, 0u);
+        const auto warnings = describe_faults(scene, bodies.surfaces);
+        ASSERT_EQ(warnings.size(), 1u);
+        EXPECT_THAT(warnings[0].fault, HasSubstr("lie on others and face the same way"));
+    }
+}
+
+TEST(CancelFlaps, TrianglesThatOnlyShareAnEdgeStay) {
     EXPECT_EQ(find_flaps(wax_scene({tests::make_cube(3, false)}), 0).pairs, 0u);
     Scene others = wax_scene({tests::make_sphere(1), make_flap(3)});
     others.materials.push_back({.name = "Opaque"});
