@@ -13,6 +13,7 @@
 #include <exception>
 #include <string>
 
+#include "tests/properties/coverage.h"
 #include "tests/properties/physics.h"
 #include "tests/properties/shrink.h"
 
@@ -79,11 +80,29 @@ bool judge_seed(std::uint64_t seed) {
     return false;
 }
 
+// Of how many scenes the stated error covers what path tracing finds, on how many.
+int count_covered(std::uint64_t scenes, std::uint64_t first) {
+    for (std::uint64_t seed = first; seed < first + scenes; ++seed) {
+        const auto beside = compare_with_reference(random_scene(seed));
+        if (!beside) continue;
+        std::printf("%s: seed %llu errs by %.3f (from %.3f), states up to %.3f: %s\n",
+                    beside->covers() ? "covered" : "missed", static_cast<unsigned long long>(seed),
+                    beside->found, beside->found_least, beside->stated_most,
+                    describe(random_scene(seed)).c_str());
+        std::fflush(stdout);
+    }
+    return 0;
+}
+
 int run(int count, char** argument) {
+    const std::string first_word = count > 1 ? argument[1] : "";
+    if (count == 4 && first_word == "coverage")
+        return count_covered(std::strtoull(argument[2], nullptr, 10),
+                             std::strtoull(argument[3], nullptr, 10));
     if (count == 2) {
-        const std::string text = argument[1];
-        const SceneWords scene =
-            text.find(';') == text.npos ? random_scene(std::stoull(text)) : parse_scene(text);
+        const SceneWords scene = first_word.find(';') == first_word.npos
+                                     ? random_scene(std::stoull(first_word))
+                                     : parse_scene(first_word);
         std::printf("%s\n%s", describe(scene).c_str(), inspect(scene).c_str());
         std::fflush(stdout);
         const std::string fault = judge_apart(scene);
@@ -91,7 +110,7 @@ int run(int count, char** argument) {
         return fault.empty() ? 0 : 1;
     }
     if (count != 3) {
-        std::fprintf(stderr, "usage: %s COUNT FIRST_SEED, or a scene's line or seed\n",
+        std::fprintf(stderr, "usage: %s [coverage] COUNT FIRST_SEED, or a scene's line or seed\n",
                      argument[0]);
         return 2;
     }

@@ -80,9 +80,9 @@ bool absorbs(const Thing& thing) {
         case ThingKind::opaque:
         case ThingKind::metal:
         case ThingKind::coat:
-            // Backs are black.
-            if (!is_solid || thing.flaw == Flaw::open || thing.flaw == Flaw::inside_out ||
-                thing.flaw == Flaw::flap)
+            // Backs are black, and so are cavities.
+            if (!is_solid || thing.shape == Shape::shell || thing.flaw == Flaw::open ||
+                thing.flaw == Flaw::inside_out || thing.flaw == Flaw::flap)
                 return true;
             break;
         case ThingKind::medium:
