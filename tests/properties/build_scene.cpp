@@ -152,13 +152,21 @@ BuiltScene build_scene(const SceneWords& words) {
     scene.origin = glm::dvec3(words.distance, -0.3 * words.distance, 0.7 * words.distance);
     std::vector<double> emission(things.size(), 1);
     for (std::size_t i = 0; i < things.size(); ++i) {
-        if (things[i].kind == ThingKind::bulb) built.in_balance = false;
+        if (things[i].kind == ThingKind::bulb) built.sent.reset();
         if (things[i].kind != ThingKind::lamp && things[i].kind != ThingKind::glow) continue;
         const std::optional<double> index = index_around(things, i);
         built.in_balance = built.in_balance && index.has_value();
         emission[i] = index.value_or(1) * index.value_or(1);
         // One material cannot be in balance in two media.
         built.in_balance = built.in_balance && emission[i] == emission[things[i].source];
+    }
+    built.in_balance = built.in_balance && built.sent;
+    if (built.sent && !built.in_balance) {
+        double index = 1;  // the smallest, out of which light leaves brightest
+        for (const PlacedThing& thing : things) {
+            if (is_body(thing)) index = std::min(index, thing.eta);
+        }
+        built.sent = std::ranges::max(emission) / (index * index);
     }
     built.is_furnace =
         built.in_balance && std::ranges::none_of(things, absorbs) && !loses_light_inside(things);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "formats/scene.h"
@@ -21,6 +22,9 @@ struct BuiltScene {
     /// darker. Not points; nor what stands in two media at once, since within a medium a lamp sends
     /// out what leaves it as L / eta^2.
     bool in_balance = true;
+    /// The largest radiance of what lamps send out, 1 in balance; nothing: there are points of
+    /// light.
+    std::optional<double> sent = 1;
     bool is_furnace = false;  ///< nothing absorbs, and lamps are in balance
 };
 

@@ -17,7 +17,8 @@ struct Fault {
 ///   bakes      no error, whatever the scene;
 ///   finite     under every light, a black one and texels of 1e30 among them, nothing is NaN,
 ///              infinite or negative; under black nothing shines but lamps;
-///   bounds     lights of 0 <= L <= 1 and black lamps of radiance 1 make nothing brighter than 1;
+///   bounds     lights of 0 <= L <= 1 and black lamps of radiance 1 make nothing brighter than 1,
+///              and lamps nothing brighter than they are;
 ///   furnace    where nothing absorbs, an even light of 1 and such lamps make all that is seen 1,
 ///              within the error that the bake states;
 ///   linear     lights that are added up or scaled add up what they show, or scale it;

@@ -66,11 +66,6 @@ PlacedThing copied(const PlacedThing& original, const Thing& copy) {
     return thing;
 }
 
-bool is_body(const Thing& thing) {
-    return thing.kind == ThingKind::medium || thing.kind == ThingKind::clear ||
-           thing.kind == ThingKind::core;
-}
-
 }  // namespace
 
 std::vector<PlacedThing> place_things(const std::vector<Thing>& things) {
@@ -92,6 +87,11 @@ std::vector<PlacedThing> place_things(const std::vector<Thing>& things) {
         placed.push_back(thing);
     }
     return placed;
+}
+
+bool is_body(const Thing& thing) {
+    return thing.kind == ThingKind::medium || thing.kind == ThingKind::clear ||
+           thing.kind == ThingKind::core;
 }
 
 bool is_at(const PlacedThing& thing, glm::dvec3 where) {

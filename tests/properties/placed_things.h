@@ -19,6 +19,9 @@ struct PlacedThing : Thing {
 /// stand within the one before are half as large as it.
 std::vector<PlacedThing> place_things(const std::vector<Thing>& things);
 
+/// A thing that a medium fills.
+bool is_body(const Thing& thing);
+
 /// Whether a point is in a thing or within a fiftieth of its size of it.
 bool is_at(const PlacedThing& thing, glm::dvec3 point);
 
