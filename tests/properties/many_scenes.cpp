@@ -32,8 +32,8 @@ std::string judge(const SceneWords& scene) {
     }
 }
 
-// The fault of a scene, crashes and hangs among them; empty: none.
-std::string judge_apart(const SceneWords& scene) {
+// The answer of a process of its own, or how that ended.
+std::string answer_apart(const SceneWords& scene, std::string (*ask)(const SceneWords&)) {
     std::array<int, 2> pipe_ends{};
     if (::pipe(pipe_ends.data()) != 0) std::abort();
     const pid_t child = ::fork();
@@ -41,7 +41,7 @@ std::string judge_apart(const SceneWords& scene) {
         const rlimit limit{kMostSeconds, kMostSeconds};
         ::setrlimit(RLIMIT_CPU, &limit);
         ::alarm(kMostPatience);
-        const std::string answer = judge(scene);
+        const std::string answer = ask(scene);
         const bool is_sent = ::write(pipe_ends[1], answer.data(), answer.size()) >= 0;
         std::_Exit(is_sent ? 0 : 1);
     }
@@ -59,6 +59,11 @@ std::string judge_apart(const SceneWords& scene) {
     return signal == SIGALRM || signal == SIGXCPU || signal == SIGKILL
                ? "hangs: for minutes"
                : "crash: signal " + std::to_string(signal);
+}
+
+// The fault of a scene, crashes and hangs among them; empty: none.
+std::string judge_apart(const SceneWords& scene) {
+    return answer_apart(scene, judge);
 }
 
 std::string property_of(const std::string& fault) {
@@ -80,15 +85,24 @@ bool judge_seed(std::uint64_t seed) {
     return false;
 }
 
-// Of how many scenes the stated error covers what path tracing finds, on how many.
-int count_covered(std::uint64_t scenes, std::uint64_t first) {
+// Whether the stated error covers what path tracing finds; empty: there is nothing to compare.
+std::string compare_errors(const SceneWords& scene) {
+    const auto beside = compare_with_reference(scene);
+    if (!beside) return "";
+    std::array<char, 200> line{};
+    std::snprintf(line.data(), line.size(), "%s: errs by %.3f (from %.3f), states up to %.3f",
+                  beside->covers() ? "covered" : "missed", beside->found, beside->found_least,
+                  beside->stated_most);
+    return line.data();
+}
+
+int compare_seeds(std::uint64_t scenes, std::uint64_t first) {
     for (std::uint64_t seed = first; seed < first + scenes; ++seed) {
-        const auto beside = compare_with_reference(random_scene(seed));
-        if (!beside) continue;
-        std::printf("%s: seed %llu errs by %.3f (from %.3f), states up to %.3f: %s\n",
-                    beside->covers() ? "covered" : "missed", static_cast<unsigned long long>(seed),
-                    beside->found, beside->found_least, beside->stated_most,
-                    describe(random_scene(seed)).c_str());
+        const SceneWords scene = random_scene(seed);
+        const std::string answer = answer_apart(scene, compare_errors);
+        if (answer.empty()) continue;
+        std::printf("%s: seed %llu: %s\n", answer.c_str(), static_cast<unsigned long long>(seed),
+                    describe(scene).c_str());
         std::fflush(stdout);
     }
     return 0;
@@ -97,7 +111,7 @@ int count_covered(std::uint64_t scenes, std::uint64_t first) {
 int run(int count, char** argument) {
     const std::string first_word = count > 1 ? argument[1] : "";
     if (count == 4 && first_word == "coverage")
-        return count_covered(std::strtoull(argument[2], nullptr, 10),
+        return compare_seeds(std::strtoull(argument[2], nullptr, 10),
                              std::strtoull(argument[3], nullptr, 10));
     if (count == 2) {
         const SceneWords scene = first_word.find(';') == first_word.npos
