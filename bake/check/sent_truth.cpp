@@ -34,7 +34,7 @@ std::vector<float> answer_cells(const SentTruth& truth, const SentLight& light,
     const auto in_band = [&](std::uint32_t band, std::size_t cell) {
         const auto bands = static_cast<std::uint32_t>(light.bands());
         const AnswerToSent answer =
-            truth.even ? answer_of_medium(even, front.open)
+            truth.even ? answer_of_medium(even, front.open, even)
                        : answer_of_surface(truth.material, at.behind ? 1 : 0, band, bands);
         const std::size_t i = (bands == 1 ? 0 : band * cells) + cell;
         return answer.front * front.rows[i] + (back.rows.empty() ? 0 : answer.back * back.rows[i]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -16,7 +17,7 @@ namespace opaline::bake {
 namespace {
 
 // Sides of a body's vertex of which less is open answer to light of the sky by chance.
-constexpr float kLeastOpen = 0.1f;
+constexpr double kLeastOpen = 0.1;
 
 constexpr std::uint32_t kFinestTransmittance = 16;  // texels along an edge of a face
 
@@ -69,9 +70,9 @@ AnswerToSent answer_of_surface(const formats::Material& material, std::uint32_t 
     return term == 0 ? AnswerToSent{r, t} : AnswerToSent{t, r};
 }
 
-AnswerToSent answer_of_medium(double even, float open) {
-    return {static_cast<float>(even) * std::numbers::inv_pi_v<float> / std::max(open, kLeastOpen),
-            0};
+AnswerToSent answer_of_medium(double even, float open, double most) {
+    const double lit = std::max({static_cast<double>(open), kLeastOpen, most});
+    return {static_cast<float>(even * std::numbers::inv_pi / lit), 0};
 }
 
 std::uint64_t complete_row(const VolumesBefore& volumes, const formats::Material& material,
@@ -90,14 +91,22 @@ std::uint64_t complete_row(const VolumesBefore& volumes, const formats::Material
         }
     }
     const std::vector<double> solid_angles = formats::texel_solid_angles(n);
+    std::vector<double> even;  // of media, term by term
+    for (std::uint32_t k = 0; k < row.terms; ++k) {
+        for (std::uint32_t band = 0; band < row.bands; ++band) {
+            haar_inverse_cube(row.plane(k, band), n);
+            even.push_back(even_response(row.plane(k, band), solid_angles));
+        }
+    }
+    const double most =
+        std::abs(*std::ranges::max_element(even, {}, [](double value) { return std::abs(value); }));
     for (std::uint32_t k = 0; k < row.terms; ++k) {
         for (std::uint32_t band = 0; band < row.bands; ++band) {
             const std::span<float> texels = row.plane(k, band);
-            haar_inverse_cube(texels, n);
             AnswerToSent answer;
             if (volumes.sent != nullptr) {
                 answer = layout.translucent
-                             ? answer_of_medium(even_response(texels, solid_angles), lit.front.open)
+                             ? answer_of_medium(even[k * row.bands + band], lit.front.open, most)
                              : answer_of_surface(material, k, band, row.bands);
             }
             const float* const share = &through[volumes.space.is_grey ? 0 : band * cells];

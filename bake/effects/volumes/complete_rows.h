@@ -30,8 +30,10 @@ struct AnswerToSent {
 AnswerToSent answer_of_surface(const formats::Material& material, std::uint32_t term,
                                std::uint32_t band, std::uint32_t bands);
 /// Of a row of a medium that answers `even` to an even sky of radiance 1, where `open` is the share
-/// of its hemisphere in which no surface is met: as to that sky, for each unit of irradiance.
-AnswerToSent answer_of_medium(double even, float open);
+/// of its hemisphere in which no surface is met: as to that sky, for each unit of irradiance. In
+/// hollows much of that is light of other walls or through them: `most`, the largest answer of the
+/// receiver's rows, would exceed 1 if it were all of light that arrives there, so that it is 1.
+AnswerToSent answer_of_medium(double even, float open, double most);
 
 /// Multiplies the dense rows of a receiver by the transmittance of volumes from each direction to
 /// it, and adds the light that they scatter to it. Exact for light that a surface reflects; light

@@ -1,4 +1,5 @@
 // Light that volumes scatter to surfaces, at points.
+#include "bake/effects/volumes/complete_rows.h"
 #include "bake/effects/volumes/sent_light.h"
 
 #include <gtest/gtest.h>
@@ -147,6 +148,17 @@ TEST(SentLight, SmokeThatAbsorbsByColourSendsColours) {
     EXPECT_GT(under_even_light(sent, 0), 3 * under_even_light(sent, 1));
     EXPECT_GT(under_even_light(sent, 1), 0);
     EXPECT_EQ(under_even_light(sent, 2), 0);
+}
+
+// The wall of a hollow of white glass shows an even sky of which it sees a tenth: all but that tenth
+// came by other walls. Smoke in the hollow lit it as if ten times as bright.
+TEST(SentLight, BodiesShowNoMoreOfItThanArrives) {
+    constexpr double kPi = std::numbers::pi;
+    EXPECT_NEAR(kPi * double{answer_of_medium(0.96, 0.1f, 0.96).front}, 1, 1e-6);
+    EXPECT_NEAR(kPi * double{answer_of_medium(0.4, 0.5f, 0.4).front}, 0.8, 1e-6)
+        << "half of the sky, of which .2 is absorbed";
+    EXPECT_NEAR(kPi * double{answer_of_medium(-0.2, 1, 0.9).front}, -0.2, 1e-6)
+        << "in the open, a row of views";
 }
 
 TEST(PlanSentLight, NoSurfaceReceivesMoreThanTheBoundAndTheNearestOneAGoodPartOfIt) {
