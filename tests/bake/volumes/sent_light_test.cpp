@@ -1,5 +1,4 @@
 // Light that volumes scatter to surfaces, at points.
-#include "bake/effects/volumes/complete_rows.h"
 #include "bake/effects/volumes/sent_light.h"
 
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include <numeric>
 
 #include "bake/base/frame.h"
+#include "bake/effects/volumes/complete_rows.h"
 #include "bake/effects/volumes/largest_light.h"
 #include "bake/effects/volumes/volume_knobs.h"
 #include "tests/bake/volumes/volume_support.h"
@@ -150,10 +150,9 @@ TEST(SentLight, SmokeThatAbsorbsByColourSendsColours) {
     EXPECT_EQ(under_even_light(sent, 2), 0);
 }
 
-// The wall of a hollow of white glass shows an even sky of which it sees a tenth: all but that tenth
-// came by other walls. Smoke in the hollow lit it as if ten times as bright.
+// The wall of a hollow of white glass shows an even sky of which it sees a tenth: all but that
+// tenth came by other walls. Smoke in the hollow lit it as if ten times as bright.
 TEST(SentLight, BodiesShowNoMoreOfItThanArrives) {
-    constexpr double kPi = std::numbers::pi;
     EXPECT_NEAR(kPi * double{answer_of_medium(0.96, 0.1f, 0.96).front}, 1, 1e-6);
     EXPECT_NEAR(kPi * double{answer_of_medium(0.4, 0.5f, 0.4).front}, 0.8, 1e-6)
         << "half of the sky, of which .2 is absorbed";
