@@ -84,8 +84,7 @@ Apart measure(const Comparison& pairs, bool only_brighter) {
 // Where the order and the place of things stay, bakes draw the same rays again: what then differs
 // is roundings, and what few rays change by them.
 double allowed(Again again, double stated) {
-    const bool same_rays =
-        again == Again::scaled || again == Again::unwelded || again == Again::split;
+    const bool same_rays = again == Again::scaled || again == Again::unwelded;
     constexpr double kRoundings = 0.02, kNoise = 0.09;
     return same_rays ? std::max(0.1 * stated, kRoundings) : 1.5 * std::max(stated, kNoise);
 }
