@@ -54,7 +54,8 @@ void append_tangent(formats::Primitive& p, const formats::AddedVertex& at) {
 
 }  // namespace
 
-SplitMesh::SplitMesh(const formats::Scene& scene) : scene_(scene), place_(scene.primitives.size()) {
+SplitMesh::SplitMesh(const formats::Scene& scene, CutRule rule)
+    : scene_(scene), rule_(std::move(rule)), place_(scene.primitives.size()) {
     std::unordered_map<glm::vec3, std::uint32_t, PositionHash> known;
     for (std::uint32_t number = 0; number < scene_.primitives.size(); ++number) {
         const formats::Primitive& p = scene_.primitives[number];
@@ -117,6 +118,14 @@ double SplitMesh::longest_edge(std::uint32_t triangle) const {
     const std::uint32_t side = longest_side(triangle);
     return glm::distance(glm::dvec3(position_[place_of(triangle, side)]),
                          glm::dvec3(position_[place_of(triangle, (side + 1) % 3)]));
+}
+
+EdgeCut SplitMesh::cut_of(std::uint32_t triangle) {
+    link_all();
+    const std::uint32_t side = longest_side(triangle);
+    const Edge edge = length_of(triangle, side).edge;
+    const EdgeCut cut = find_cut(edge);
+    return place_of(triangle, side) == edge >> 32 ? cut : cut.turned();
 }
 
 std::vector<std::uint32_t> SplitMesh::neighbours(std::uint32_t triangle) {
@@ -190,15 +199,35 @@ void SplitMesh::unlink(std::uint32_t triangle, std::uint32_t side) {
     if (at->second == kNoSide) first_.erase(at);
 }
 
-void SplitMesh::halve_edge(Edge edge, std::vector<Half>& halves) {
+std::vector<std::uint32_t> SplitMesh::sides_of(Edge edge) const {
     std::vector<std::uint32_t> sides;
     for (std::uint32_t s = first_.at(edge); s != kNoSide; s = next_[s]) {
         sides.push_back(s);
     }
     std::ranges::sort(sides);
+    return sides;
+}
+
+// Kept: those that share an edge later are parts of those that did, turned by rounding.
+EdgeCut SplitMesh::find_cut(Edge edge) {
+    if (!rule_) return {};
+    const auto [at, is_new] = cut_.try_emplace(edge);
+    if (!is_new) return at->second;
+    std::vector<glm::vec3> normals;
+    for (const std::uint32_t side : sides_of(edge)) {
+        const Triangle& t = triangles_[side / 3];
+        normals.push_back(triangle_normal(scene_.primitives[t.primitive], t.first_index / 3));
+    }
+    at->second = rule_(position_[edge >> 32], position_[edge & 0xffffffffu], normals);
+    return at->second;
+}
+
+void SplitMesh::halve_edge(Edge edge, std::vector<Half>& halves) {
+    const std::vector<std::uint32_t> sides = sides_of(edge);
+    const EdgeCut cut = find_cut(edge);
     const auto place = static_cast<std::uint32_t>(position_.size());
-    // Halves of sums would overflow.
-    position_.push_back(0.5f * position_[edge >> 32] + 0.5f * position_[edge & 0xffffffffu]);
+    position_.emplace_back(glm::mix(glm::dvec3(position_[edge >> 32]),
+                                    glm::dvec3(position_[edge & 0xffffffffu]), cut.share));
     struct Middle {
         std::uint32_t primitive, low, high, vertex;
     };
@@ -207,6 +236,9 @@ void SplitMesh::halve_edge(Edge edge, std::vector<Half>& halves) {
         const std::uint32_t t = number / 3, side = number % 3;
         const Triangle whole = triangles_[t];
         const std::uint32_t a = whole.corner[side], b = whole.corner[(side + 1) % 3];
+        const EdgeCut own = place_of(t, side) == edge >> 32 ? cut : cut.turned();
+        const glm::vec3 weight = glm::mix(whole.weight[side], whole.weight[(side + 1) % 3],
+                                          static_cast<float>(own.share));
         const Middle wanted{whole.primitive, std::min(a, b), std::max(a, b), 0};
         auto middle = std::ranges::find_if(middles, [&](const Middle& m) {
             return m.primitive == wanted.primitive && m.low == wanted.low && m.high == wanted.high;
@@ -214,12 +246,11 @@ void SplitMesh::halve_edge(Edge edge, std::vector<Half>& halves) {
         if (middle == middles.end()) {
             middles.push_back(wanted);
             middle = middles.end() - 1;
-            middle->vertex = add_vertex(whole, side, place);
+            middle->vertex = add_vertex(whole, weight, place);
         }
         for (std::uint32_t k = 0; k < 3; ++k) {
             unlink(t, k);
         }
-        const glm::vec3 weight = 0.5f * whole.weight[side] + 0.5f * whole.weight[(side + 1) % 3];
         const std::uint32_t c = (side + 2) % 3, next = (side + 1) % 3;
         Triangle first = whole, second = whole;
         first.corner = {a, middle->vertex, whole.corner[c]};
@@ -233,17 +264,20 @@ void SplitMesh::halve_edge(Edge edge, std::vector<Half>& halves) {
         next_.insert(next_.end(), 3, kNoSide);
         link(t);
         link(last);
-        halves.push_back({t, last, side, a, b, middle->vertex});
+        halves.push_back({t, last, side, a, b, middle->vertex, own});
     }
 }
 
-std::uint32_t SplitMesh::add_vertex(const Triangle& triangle, std::uint32_t side,
+std::uint32_t SplitMesh::add_vertex(const Triangle& triangle, glm::vec3 weight,
                                     std::uint32_t place) {
     formats::Primitive& p = scene_.primitives[triangle.primitive];
-    const glm::vec3 weight = 0.5f * triangle.weight[side] + 0.5f * triangle.weight[(side + 1) % 3];
-    const formats::AddedVertex at{{p.index[triangle.first_index], p.index[triangle.first_index + 1],
-                                   p.index[triangle.first_index + 2]},
-                                  {weight.y, weight.z}};
+    formats::AddedVertex at{{p.index[triangle.first_index], p.index[triangle.first_index + 1],
+                             p.index[triangle.first_index + 2]},
+                            {weight.y, weight.z}};
+    while (at.weights()[0] < 0) {  // by rounding
+        float& larger = *std::ranges::max_element(at.weight);
+        larger = std::nextafter(larger, 0.0f);
+    }
     p.position.push_back(position_[place]);
     append_normal(p, at);
     append_mixed(p.texcoord, at);

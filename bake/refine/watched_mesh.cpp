@@ -12,6 +12,10 @@
 namespace opaline::bake {
 namespace {
 
+// Rows where a surface crosses an edge are traced in front of it, so many times farther along the
+// edge than inside the triangle.
+constexpr double kAside = 2;
+
 void add_scaled(ErrorColumns& sum, double scale, const ErrorColumns& more) {
     for (std::size_t c = 0; c < sum.size(); ++c) {
         sum[c] += scale * more[c];
@@ -31,7 +35,10 @@ WatchedMesh::WatchedMesh(const formats::Scene& scene, const RayScene& rays,
                          double shortest, const Context& context)
     : context_(context),
       shortest_(shortest),
-      mesh_(scene),
+      mesh_(scene,
+            [this, &rays](glm::vec3 from, glm::vec3 to, std::span<const glm::vec3> normals) {
+                return find_edge_cut(mesh_.scene(), rays, from, to, normals, shortest_);
+            }),
       tracer_(mesh_.scene(), rays, cubemap_size, lamps),
       rows_(tracer_.no_rows()),
       solid_angle_(formats::texel_solid_angles(cubemap_size)) {
@@ -45,7 +52,6 @@ void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
     std::iota(all.begin(), all.end(), 0u);
     const AreaTable table = make_area_table(mesh_.scene(), all);
     watched_.assign(mesh_.size(), {});
-    std::vector<ProxyPoint> points;
     std::vector<std::uint32_t> fresh;
     std::uint32_t t = 0;
     for (const SurfacePoint& at :
@@ -53,12 +59,11 @@ void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
         while (mesh_[t].primitive != at.primitive || mesh_[t].first_index != at.first_index) {
             ++t;  // both in the scene's order
         }
-        const auto row = static_cast<std::uint32_t>(rows_.size() + points.size());
+        const auto row = static_cast<std::uint32_t>(rows_.size() + awaited_.size());
         watched_[t].looks.push_back({at.barycentric, row, false});
         if (!std::exchange(watched_[t].is_watched, true)) fresh.push_back(t);
-        points.push_back({at.primitive, at.first_index, at.barycentric});
+        awaited_.push_back({at.primitive, at.first_index, at.barycentric});
     }
-    trace(points);
     look_at(fresh);
     total_ = unseen_ = {};
     area_ = table.total();
@@ -105,26 +110,27 @@ void WatchedMesh::look_at_parts() {
     joined_.clear();
 }
 
-void WatchedMesh::trace(std::span<const ProxyPoint> points) {
-    traced_ += tracer_.append(points, context_, rows_);
+void WatchedMesh::trace() {
+    traced_ += tracer_.append(awaited_, context_, rows_);
+    awaited_.clear();
 }
 
-// A place of a triangle, a little inside it: on an edge rays may start in a wall.
-ProxyPoint WatchedMesh::point_in(std::uint32_t triangle, glm::vec3 weight) const {
+// How far inside a triangle rays start, as a share of its longest edge: on an edge in a wall.
+float WatchedMesh::inset(std::uint32_t triangle) const {
+    return static_cast<float>(std::min(0.5, 0.05 * shortest_ / mesh_.longest_edge(triangle)));
+}
+
+// The number of the row that a place of a triangle will have, traced a little inside it.
+std::uint32_t WatchedMesh::await_row(std::uint32_t triangle, glm::vec3 weight) {
     const SplitMesh::Triangle& t = mesh_[triangle];
-    const double way = std::min(0.5, 0.05 * shortest_ / mesh_.longest_edge(triangle));
-    weight = glm::mix(weight, glm::vec3(1.0f / 3.0f), static_cast<float>(way));
-    return {t.primitive, t.first_index,
-            weight.x * t.weight[0] + weight.y * t.weight[1] + weight.z * t.weight[2]};
+    weight = glm::mix(weight, glm::vec3(1.0f / 3.0f), inset(triangle));
+    awaited_.push_back({t.primitive, t.first_index,
+                        weight.x * t.weight[0] + weight.y * t.weight[1] + weight.z * t.weight[2]});
+    return static_cast<std::uint32_t>(rows_.size() + awaited_.size() - 1);
 }
 
-// Traces the rows that triangles need: of their corners, and of middles.
+// Traces the rows that triangles need: of their corners, and where they would be cut.
 void WatchedMesh::look_at(std::span<const std::uint32_t> triangles) {
-    std::vector<ProxyPoint> points;
-    const auto add = [&](std::uint32_t t, glm::vec3 weight) {
-        points.push_back(point_in(t, weight));
-        return static_cast<std::uint32_t>(rows_.size() + points.size() - 1);
-    };
     for (const std::uint32_t t : triangles) {
         const SplitMesh::Triangle& triangle = mesh_[t];
         for (std::uint32_t k = 0; k < 3; ++k) {
@@ -132,20 +138,28 @@ void WatchedMesh::look_at(std::span<const std::uint32_t> triangles) {
             if (row != formats::kNone) continue;
             glm::vec3 weight(0);
             weight[static_cast<glm::length_t>(k)] = 1;
-            row = add(t, weight);
+            row = await_row(t, weight);
         }
         Watched& own = watched_[t];
         if (own.looks.size() >= (triangle.depth == 0 ? 1 : 2)) continue;
         const std::uint32_t side = mesh_.longest_side(t);
-        glm::vec3 weight(0.5f);
-        weight[static_cast<glm::length_t>((side + 2) % 3)] = 0;
+        const EdgeCut cut = mesh_.cut_of(t);
+        const auto weight_at = [&](double share) {
+            glm::vec3 weight(0);
+            weight[static_cast<glm::length_t>(side)] = static_cast<float>(1 - share);
+            weight[static_cast<glm::length_t>((side + 1) % 3)] = static_cast<float>(share);
+            return weight;
+        };
         const std::uint32_t a = triangle.corner[side], b = triangle.corner[(side + 1) % 3];
         const VertexEdge edge{triangle.primitive, std::min(a, b), std::max(a, b)};
-        const auto [at, is_new] = middle_row_.try_emplace(edge, 0);
-        if (is_new) at->second = add(t, weight);
-        own.looks.push_back({weight, at->second, true});
+        const auto [at, is_new] = cut_row_.try_emplace(edge, 0);
+        if (is_new) {
+            const double aside = kAside * static_cast<double>(cut.front * inset(t));
+            at->second = await_row(t, weight_at(cut.share + aside));
+        }
+        own.looks.push_back({weight_at(cut.share), at->second, true});
     }
-    trace(points);
+    trace();
 }
 
 // What light spreads over inside a medium changes less over a shorter way.
@@ -195,26 +209,35 @@ void WatchedMesh::inherit(const SplitMesh::Half& half) {
     const std::uint32_t primitive = mesh_[half.first].primitive;
     std::vector<std::uint32_t>& rows = vertex_row_[primitive];
     rows.resize(mesh_.scene().primitives[primitive].position.size(), formats::kNone);
-    const auto middle =
-        middle_row_.find({primitive, std::min(half.a, half.b), std::max(half.a, half.b)});
-    if (middle != middle_row_.end()) rows[half.middle] = middle->second;
+    const auto known =
+        cut_row_.find({primitive, std::min(half.a, half.b), std::max(half.a, half.b)});
+    if (known != cut_row_.end()) rows[half.middle] = known->second;
     const Watched whole = std::exchange(watched_[half.first], {});
     if (!whole.is_watched) return;
+    if (half.cut.front != 0 && rows[half.middle] == formats::kNone) {
+        const bool is_second = half.cut.front > 0;
+        const std::uint32_t part = is_second ? half.second : half.first;
+        const float aside = static_cast<float>(kAside) * inset(part);
+        rows[half.middle] = await_row(
+            part, is_second ? glm::vec3(1 - aside, aside, 0) : glm::vec3(aside, 1 - aside, 0));
+    }
     for (const std::uint32_t part : {half.first, half.second}) {
         watched_[part].is_watched = true;
         parts_.push_back(part);
     }
+    const auto share = static_cast<float>(half.cut.share);
     for (Look look : whole.looks) {
-        if (look.is_middle) continue;  // a corner now
+        if (look.is_cut) continue;  // a corner now
         const auto at = [&](std::uint32_t k) {
             return look.weight[static_cast<glm::length_t>((half.side + k) % 3)];
         };
         const glm::vec3 weight(at(0), at(1), at(2));
-        if (weight.x >= weight.y) {
-            look.weight = {weight.x - weight.y, 2 * weight.y, weight.z};
+        const float first = weight.x / (1 - share), second = weight.y / share;
+        if (first >= second) {
+            look.weight = {weight.x - (1 - share) * second, second, weight.z};
             watched_[half.first].looks.push_back(look);
         } else {
-            look.weight = {2 * weight.x, weight.y - weight.x, weight.z};
+            look.weight = {first, weight.y - share * first, weight.z};
             watched_[half.second].looks.push_back(look);
         }
     }

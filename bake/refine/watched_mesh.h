@@ -16,8 +16,8 @@ namespace opaline::bake {
 ///
 /// Each triangle has points with proxy rows; their mean square beyond what the triangle's corners
 /// interpolate is its error. Halved triangles hand their points to their parts. A part with fewer
-/// than two gets the middle of its longest edge, whose row is its vertex's once that edge is
-/// halved. Triangles that were never looked at are not watched, and neither are their parts.
+/// than two gets the place where its longest edge is cut, whose row is its vertex's once that edge
+/// is halved. Triangles that were never looked at are not watched, and neither are their parts.
 class WatchedMesh {
   public:
     /// `shortest`: edges that matter are longer [m].
@@ -49,7 +49,7 @@ class WatchedMesh {
     struct Look {
         glm::vec3 weight;   // of the triangle's corners
         std::uint32_t row;  // of the proxies
-        bool is_middle;     // of the longest edge
+        bool is_cut;        // of the longest edge
     };
     struct Watched {
         std::vector<Look> looks;
@@ -65,8 +65,9 @@ class WatchedMesh {
         std::size_t operator()(const VertexEdge& edge) const;
     };
 
-    void trace(std::span<const ProxyPoint> points);
-    ProxyPoint point_in(std::uint32_t triangle, glm::vec3 weight) const;
+    void trace();
+    float inset(std::uint32_t triangle) const;
+    std::uint32_t await_row(std::uint32_t triangle, glm::vec3 weight);
     void look_at(std::span<const std::uint32_t> triangles);
     double contrast(std::uint32_t triangle) const;
     ErrorColumns square_at(std::uint32_t triangle, const Look& look) const;
@@ -83,7 +84,8 @@ class WatchedMesh {
     std::vector<std::uint32_t> parts_;   ///< halved and not looked at yet
     std::vector<std::uint32_t> joined_;  ///< watched and not looked at yet
     std::vector<std::vector<std::uint32_t>> vertex_row_;
-    std::unordered_map<VertexEdge, std::uint32_t, EdgeHash> middle_row_;
+    std::unordered_map<VertexEdge, std::uint32_t, EdgeHash> cut_row_;
+    std::vector<ProxyPoint> awaited_;  ///< whose rows follow those of rows_
     double area_ = 0;
     ErrorColumns total_{}, unseen_{};
     std::uint64_t traced_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "bake/base/frame.h"
@@ -26,19 +27,20 @@ RayPacket probe_packet(const Receiver& receiver) {
 
 constexpr std::uint32_t kNobody = 0xffffffffu;
 
-// For each hidden vertex, the nearest visible vertex that shares an edge with it; ties go to the
-// first.
-std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
-                                           const std::vector<Receiver>& receivers,
-                                           const std::vector<bool>& hidden) {
-    std::vector<std::uint32_t> nearest(receivers.size(), kNobody);
-    std::vector<float> distance(receivers.size(), std::numeric_limits<float>::infinity());
+// A hidden vertex and a visible one that share an edge of a primitive.
+struct HiddenEdge {
+    std::uint32_t hidden, visible;
+    float length;          // [m], between where their rays start
+    bool is_seen = false;  // a part of it is seen that is more than rounding
+};
+
+std::vector<HiddenEdge> list_hidden_edges(const formats::Scene& scene,
+                                          const std::vector<Receiver>& receivers,
+                                          const std::vector<bool>& hidden) {
+    std::vector<HiddenEdge> edges;
     const auto offer = [&](std::uint32_t from, std::uint32_t to) {
-        const float d = glm::distance(receivers[from].origin, receivers[to].origin);
-        if (hidden[from] && !hidden[to] && d < distance[from]) {
-            distance[from] = d;
-            nearest[from] = to;
-        }
+        if (!hidden[from] || hidden[to]) return;
+        edges.push_back({from, to, glm::distance(receivers[from].origin, receivers[to].origin)});
     };
     std::uint32_t base = 0;
     for (const formats::Primitive& p : scene.primitives) {
@@ -49,6 +51,57 @@ std::vector<std::uint32_t> nearest_visible(const formats::Scene& scene,
             offer(b, a);
         }
         base += static_cast<std::uint32_t>(p.position.size());
+    }
+    return edges;
+}
+
+// An edge is seen from its visible end to where it enters what hides the other one.
+void find_seen_parts(const RayScene& rays, const std::vector<Receiver>& receivers,
+                     std::span<HiddenEdge> edges) {
+    constexpr float kPart = 1e-3f;
+    RayPacket packet = rays_from({});
+    LaneMask lanes{};
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const glm::vec3 origin = receivers[edges[i].visible].origin;
+        const glm::vec3 way = receivers[edges[i].hidden].origin - origin;
+        packet.org_x[i] = origin.x, packet.dir_x[i] = way.x;
+        packet.org_y[i] = origin.y, packet.dir_y[i] = way.y;
+        packet.org_z[i] = origin.z, packet.dir_z[i] = way.z;
+        packet.tfar[i] = kPart;
+        lanes[i] = -1;
+    }
+    const PacketHits hits = rays.closest(lanes, packet);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        edges[i].is_seen = hits.hit[i] == 0;
+    }
+}
+
+// For each hidden vertex, the nearest visible vertex that shares an edge with it: of those edges
+// that are seen in part, if there are any; ties go to the first.
+std::vector<std::uint32_t> nearest_visible(const RayScene& rays, const formats::Scene& scene,
+                                           const std::vector<Receiver>& receivers,
+                                           const std::vector<bool>& hidden,
+                                           const Context& context) {
+    std::vector<HiddenEdge> edges = list_hidden_edges(scene, receivers, hidden);
+    for_each_block_in_order(
+        edges.size(), RayPacket::kSize, context,
+        [&](Range range) {
+            find_seen_parts(rays, receivers,
+                            std::span(edges).subspan(range.begin, range.end - range.begin));
+            return true;
+        },
+        [](Range, bool) {});
+    std::vector<const HiddenEdge*> best(receivers.size(), nullptr);
+    for (const HiddenEdge& edge : edges) {
+        const HiddenEdge*& own = best[edge.hidden];
+        if (own == nullptr ||
+            (edge.is_seen == own->is_seen ? edge.length < own->length : edge.is_seen)) {
+            own = &edge;
+        }
+    }
+    std::vector<std::uint32_t> nearest;
+    for (const HiddenEdge* edge : best) {
+        nearest.push_back(edge == nullptr ? kNobody : edge->visible);
     }
     return nearest;
 }
@@ -95,7 +148,8 @@ std::vector<Receiver> replace_hidden_receivers(const RayScene& rays, const forma
             hidden.insert(hidden.end(), block.begin(), block.end());
         });
     hidden.resize(receivers.size());  // cancelled: there may be fewer
-    const std::vector<std::uint32_t> nearest = nearest_visible(scene, receivers, hidden);
+    const std::vector<std::uint32_t> nearest =
+        nearest_visible(rays, scene, receivers, hidden, context);
     std::vector<Receiver> result = receivers;
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         if (nearest[i] != kNobody) {

@@ -19,8 +19,10 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver);
 
 /// Vertices inside a closed body are black, such as floor vertices under a statue. Interpolation
 /// would spread the black over the visible parts of their triangles. A hidden vertex therefore
-/// gathers at the origin of its nearest visible neighbour, with its own normal. A hidden vertex
-/// without a visible neighbour stays as it is, because no visible point depends on it.
+/// gathers at the origin of its nearest visible neighbour, with its own normal: of those to which
+/// the way is seen in part, if there are any, so that a floor's vertex below a wall takes the side
+/// on which its triangles show. A hidden vertex without a visible neighbour stays as it is, because
+/// no visible point depends on it.
 ///
 /// Neighbours are joined by an edge within the same primitive.
 /// `receivers`: one per vertex of the scene, in order.

@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <numeric>
 
+#include "bake/receivers/body_points.h"
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/shared_rows.h"
+#include "bake/trace/contacts.h"
+#include "bake/trace/hidden_receivers.h"
 #include "bake/trace/irradiance_transport.h"
+#include "bake/trace/touching_triangles.h"
 #include "formats/opal/cubemap.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
@@ -200,22 +205,69 @@ TEST(RefineScene, ARoomThatLightCannotEnterStaysBlackAtAddedReceivers) {
     }
 }
 
-// The least irradiance over pi of a scene's receivers under an even sky.
-double least_openness(const Scene& scene) {
-    const RayScene rays = RayScene::build(scene, 2).value();
+// Irradiance of an even sky over pi.
+std::vector<float> openness_at(const RayScene& rays, const std::vector<Receiver>& receivers) {
     const DirectionSet directions = make_direction_set(8);
     std::vector<float> transport(6 * 8 * 8);
     const std::vector<double> area = formats::texel_solid_angles(8);
-    double least = 1;
-    for (const Receiver& receiver : make_vertex_receivers(scene)) {
+    std::vector<float> open;
+    for (const Receiver& receiver : receivers) {
         gather_irradiance(rays, directions, receiver, transport);
         double sum = 0;
         for (std::size_t j = 0; j < transport.size(); ++j) {
             sum += area[j % area.size()] * static_cast<double>(transport[j]);
         }
-        least = std::min(least, sum / std::numbers::pi);
+        open.push_back(static_cast<float>(sum / std::numbers::pi));
     }
-    return least;
+    return open;
+}
+
+// At vertices as a bake places them.
+std::vector<float> openness_of(const Scene& scene) {
+    const RayScene rays = RayScene::build(scene, 2).value();
+    std::vector<Receiver> vertices =
+        leave_touching_triangles(rays.hierarchy(), scene, make_vertex_receivers(scene), {});
+    std::vector<BodyPoint> inside = make_body_points(scene, vertices);
+    std::vector<std::uint32_t> all(vertices.size());
+    std::iota(all.begin(), all.end(), 0u);
+    look_beside_contacts(find_contacts(rays.hierarchy(), scene, all, {}), vertices, inside);
+    return openness_at(rays, replace_hidden_receivers(rays, scene, vertices, {}));
+}
+
+// A room closed to light stands on a floor that runs on below its walls, which are .1 thick. What
+// vertices under the walls and outside see must not reach its corners: of the floor inside, no more
+// than three thousandths of an open floor's light, where triangles reach round corners of walls.
+TEST(RefineScene, AFloorThatRunsOnBelowTheWallsOfADarkRoomIsDarkUpToThem) {
+    const glm::mat3 turned(glm::rotate(glm::mat4(1), 0.3f, {0, 1, 0}));
+    const Scene scene = tests::make_scene(
+        {tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}),
+         tests::transformed(tests::make_cube(1, false), turned, 1.1f, {0, 0.1f, 0}),
+         tests::transformed(tests::make_cube(1, true), turned, 1.0f, {0, 0.1f, 0})});
+    const RefinedScene found = refine(scene, some_limits(0.1));
+    ASSERT_TRUE(found.scene);
+    const std::vector<float> open = openness_of(*found.scene);
+    const formats::Primitive& floor = found.scene->primitives[0];
+    double lit = 0;
+    std::size_t points = 0;
+    for (const SurfacePoint& at :
+         scatter_points(*found.scene, make_area_table(*found.scene, {0}), 20000, false, 1)) {
+        const glm::vec3 local = glm::transpose(turned) * at.position;
+        if (std::abs(local.x) > 0.999f || std::abs(local.z) > 0.999f) continue;
+        float value = 0;
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            value += at.barycentric[static_cast<glm::length_t>(k)] *
+                     open[floor.index[at.first_index + k]];
+        }
+        lit += static_cast<double>(value);
+        ++points;
+    }
+    EXPECT_GT(points, 4000u);
+    EXPECT_LT(lit / static_cast<double>(points), 0.003);
+}
+
+double least_openness(const Scene& scene) {
+    const RayScene rays = RayScene::build(scene, 2).value();
+    return static_cast<double>(std::ranges::min(openness_at(rays, make_vertex_receivers(scene))));
 }
 
 // Smooth shading of few facets: a receiver that is added looks from the smooth surface, as points

@@ -11,8 +11,8 @@ using formats::Primitive;
 using formats::Scene;
 
 // Halves triangles all over, again and again, in an order of no pattern.
-Scene halved(const Scene& scene, std::uint32_t times) {
-    SplitMesh mesh(scene);
+Scene halved(const Scene& scene, std::uint32_t times, SplitMesh::CutRule rule = nullptr) {
+    SplitMesh mesh(scene, std::move(rule));
     std::vector<SplitMesh::Half> halves;
     std::uint32_t drawn = 1;
     for (std::uint32_t i = 0; i < times; ++i) {
@@ -129,6 +129,34 @@ TEST(SplitMesh, AddedVerticesLieWhereTheirWeightsSay) {
         EXPECT_NEAR(glm::length(p.normal[first + i]), 1, 1e-6f);
         EXPECT_GT(glm::dot(p.normal[first + i], glm::normalize(at)), 0.9f);
     }
+}
+
+// Where the plane y = 0.4375 cuts them, and a third along elsewhere.
+EdgeCut cut_by_plane(glm::vec3 from, glm::vec3 to, std::span<const glm::vec3>) {
+    const double share =
+        (0.4375 - static_cast<double>(from.y)) / static_cast<double>(to.y - from.y);
+    if (share > 1e-3 && share < 1 - 1e-3) return {share, 0};
+    return {from.x + 2 * from.z < to.x + 2 * to.z ? 1 / 3.0 : 2 / 3.0, 0};
+}
+
+TEST(SplitMesh, EdgesThatAreCutBesideTheirMiddleStayShared) {
+    const Scene before = seamed_cube(), after = halved(before, 1000, cut_by_plane);
+    EXPECT_NEAR(area_of(after), area_of(before), 1e-5 * area_of(before));
+    const auto edges = count_edges(after);
+    for (const auto& [edge, count] : edges) {
+        ASSERT_EQ(count, 1);
+        ASSERT_EQ(edges.count({edge.second, edge.first}), 1u);
+    }
+    std::size_t in_plane = 0;
+    for (const Primitive& p : after.primitives) {
+        for (const glm::vec3& x : p.position) {
+            in_plane += std::abs(x.y - 0.4375f) < 1e-6f ? 1 : 0;
+        }
+        for (const formats::AddedVertex& at : p.added) {
+            EXPECT_TRUE(std::ranges::all_of(at.weights(), [](float w) { return w >= 0; }));
+        }
+    }
+    EXPECT_GT(in_plane, 30u);
 }
 
 TEST(SplitMesh, TrianglesWithoutAreaStay) {

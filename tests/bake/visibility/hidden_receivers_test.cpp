@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/trace/touching_triangles.h"
 #include "tests/bake/visibility/white_sky.h"
 #include "tests/support/scenes.h"
 
@@ -54,6 +55,27 @@ TEST(HiddenReceivers, DoubleSidedBodiesAndClosedRoomsStayDarkInside) {
     EXPECT_EQ(brightness(box)[floor_vertex(box, 10, 12)], 0);
     for (const double seen : brightness(tests::make_scene({tests::make_cube(3, true)}))) {
         ASSERT_EQ(seen, 0);
+    }
+}
+
+// A floor's vertex in the wall of a dark room, nearer to the one at the wall's outer face than to
+// that in the room: its triangles show in the room alone.
+TEST(HiddenReceivers, AFloorsVertexInAWallTakesTheSideOnWhichItsTrianglesShow) {
+    formats::Scene scene = tests::make_scene(
+        {tests::transformed(tests::make_cube(1, false), glm::mat3(1), 1.1f, {0, 0.3f, 0}),
+         tests::transformed(tests::make_cube(1, true), glm::mat3(1), 1, {0, 0.3f, 0}),
+         tests::make_quad({0, 0, -0.5f}, {0, 0, 1}, {2, 0, 0}, 2)});
+    formats::Primitive& floor = scene.primitives[2];
+    for (glm::vec3& x : floor.position) {
+        x.x = x.x == 0 ? 0.5f : x.x == 1 ? 1.06f : 1.1f;
+    }
+    const RayScene rays = tests::build_rays(scene);
+    const std::vector<Receiver> receivers =
+        leave_touching_triangles(rays.hierarchy(), scene, make_vertex_receivers(scene), {});
+    const std::vector<Receiver> seen = replace_hidden_receivers(rays, scene, receivers, {});
+    for (std::size_t v = seen.size() - 9; v < seen.size(); ++v) {
+        const float at = floor.position[v - (seen.size() - 9)].x;
+        EXPECT_EQ(tests::white_irradiance(rays, seen[v], 8) > 0, at == 1.1f) << at;
     }
 }
 
