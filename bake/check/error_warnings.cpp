@@ -23,6 +23,21 @@ std::string remedy_at_receivers(const MeasuredError& error) {
            worst->name + "' errs most";
 }
 
+const char* remedy_between(RefineChoice::Mode mode, bool is_bounded) {
+    if (mode == RefineChoice::Mode::off) {
+        return "let --refine add receivers where its light changes, or give it more vertices where "
+               "shadows end and where things touch";
+    }
+    if (is_bounded) {
+        return "choose a finer --quality or a larger --max-receivers, so that more receivers are "
+               "added";
+    }
+    return mode == RefineChoice::Mode::edges
+               ? "give --refine a shorter edge, so that more receivers are added"
+               : "choose a finer --quality or give --refine an edge, so that more receivers are "
+                 "added";
+}
+
 }  // namespace
 
 std::string error_percent(double share) {
@@ -44,7 +59,8 @@ bool meets_target(const ErrorReport& error, const Knobs& knobs) {
 
 std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
                                                          const Knobs& knobs,
-                                                         const ErrorReport& error) {
+                                                         const ErrorReport& error,
+                                                         bool refinement_is_bounded) {
     std::vector<formats::Diagnostic> warnings;
     const bool asked = knobs.error_target > 0;
     const double limit = asked ? knobs.numerical_target() : acceptable_error(knobs.quality);
@@ -70,11 +86,7 @@ std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& s
             "", "primitive '" + scene.primitives[error.worst_between].name + "'",
             "the file errs by " + with_interval(error.between) + " between its vertices" + more +
                 "; most of that here",
-            knobs.refine.mode == RefineChoice::Mode::off
-                ? "let --refine add receivers where its light changes, or give it more vertices "
-                  "where shadows end and where things touch"
-                : "choose a finer --quality or a larger --max-receivers, so that more receivers "
-                  "are added"));
+            remedy_between(knobs.refine.mode, refinement_is_bounded)));
     }
     return warnings;
 }

@@ -28,9 +28,11 @@ bool meets_target(const ErrorReport& error, const Knobs& knobs);
 /// Warnings where the self-check found too large an error, with a remedy. With Knobs::error_target:
 /// between receivers alone, above Knobs::numerical_target(); the pilot explains errors at
 /// receivers. Without: wherever the lower end of the interval is above acceptable_error.
+/// `refinement_is_bounded`: a limit of receivers ended refinement, so that a larger one helps.
 std::vector<formats::Diagnostic> describe_measured_error(const formats::Scene& scene,
                                                          const Knobs& knobs,
-                                                         const ErrorReport& error);
+                                                         const ErrorReport& error,
+                                                         bool refinement_is_bounded);
 
 /// Names of the effects that the bake simulates and the self-check does not see, each once, in the
 /// order of the plan: those that add nothing to rows, because the runtime computes them for an eye.

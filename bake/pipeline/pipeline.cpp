@@ -187,7 +187,8 @@ formats::Status bake_inspected(const BakeInputs& unlit, std::span<const Lamp> la
     for (const std::string_view name : unmeasured_effects(bake.effects, result.plan)) {
         result.error.not_measured.emplace_back(name);
     }
-    for (formats::Diagnostic& warning : describe_measured_error(bake.scene, knobs, result.error)) {
+    for (formats::Diagnostic& warning :
+         describe_measured_error(bake.scene, knobs, result.error, result.refinement.is_bounded)) {
         result.warnings.push_back(std::move(warning));
     }
     if (result.accuracy) {

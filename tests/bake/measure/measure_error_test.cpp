@@ -57,10 +57,12 @@ class MeasuredErrorWarnings : public ::testing::Test {
         scene.primitives[3].name = "floor";
     }
 
-    std::vector<formats::Diagnostic> describe(double at_receivers, double between) const {
+    std::vector<formats::Diagnostic> describe(double at_receivers, double between,
+                                              bool is_bounded = false) const {
         const std::array<EffectCheck, 2> checks{check_of("direct", 20, at_receivers, false),
                                                 check_of("direct", 20, between, true, 3)};
-        return describe_measured_error(scene, knobs, summarise_checks(checks, kLights, 0));
+        return describe_measured_error(scene, knobs, summarise_checks(checks, kLights, 0),
+                                       is_bounded);
     }
 
     formats::Scene scene;
@@ -79,6 +81,13 @@ TEST_F(MeasuredErrorWarnings, LargeErrorsOfAPresetAreSaidAndSmallOnesAreNot) {
     EXPECT_THAT(surface[0].fault, ::testing::HasSubstr("30 %"));
     EXPECT_THAT(surface[0].remedy, ::testing::HasSubstr("more vertices"));
     EXPECT_EQ(describe(0.87, 0.99).size(), 2u);
+}
+
+TEST_F(MeasuredErrorWarnings, ALargerLimitOfReceiversIsAdvisedWhereALimitEndedRefinement) {
+    knobs.refine.mode = RefineChoice::Mode::where_light_changes;
+    const auto limited = ::testing::HasSubstr("--max-receivers");
+    EXPECT_THAT(describe(0.01, 0.3, true).at(0).remedy, limited);
+    EXPECT_THAT(describe(0.01, 0.3, false).at(0).remedy, ::testing::Not(limited));
 }
 
 TEST_F(MeasuredErrorWarnings, DraftsMayErrByTwiceAsMuch) {
