@@ -26,11 +26,15 @@ ErrorColumns square_beyond(const ProxyRows& rows, std::span<const double> solid_
     ErrorColumns square{};
     square[0] = 0.5 * (suns / kOpen + (sky[0] / kPi) * (sky[1] / kPi));
     for (std::size_t lamp = 0; lamp < rows.lamps; ++lamp) {
-        double value = static_cast<double>(rows.lamps_of(row)[lamp]);
-        for (const MixedRow& other : others) {
-            value -= static_cast<double>(other.weight * rows.lamps_of(other.row)[lamp]);
+        std::array<double, 2> difference{};
+        for (std::size_t estimate = 0; estimate < 2; ++estimate) {
+            difference[estimate] = static_cast<double>(rows.lamps_of(row, estimate)[lamp]);
+            for (const MixedRow& other : others) {
+                difference[estimate] -=
+                    static_cast<double>(other.weight * rows.lamps_of(other.row, estimate)[lamp]);
+            }
         }
-        square[1 + lamp] = value * value;
+        square[1 + lamp] = difference[0] * difference[1];
     }
     return square;
 }

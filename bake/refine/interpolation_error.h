@@ -20,8 +20,8 @@ struct MixedRow {
 
 /// The square of what proxy `row` is beyond the sum of others; of the row itself without any.
 /// Distant light: the mean square over suns of all directions and the square under an even sky,
-/// half each, in units in which both are 1 of an open receiver; products of the two estimates of a
-/// row, so that noise has a mean of 0, and single values may be negative. Lamps: [lx^2].
+/// half each, in units in which both are 1 of an open receiver. Lamps: [lx^2]. Products of the two
+/// estimates of a row, so that noise has a mean of 0, and single values may be negative.
 /// `solid_angle`: of the cells of a face [sr] (formats::texel_solid_angles).
 ErrorColumns square_beyond(const ProxyRows& rows, std::span<const double> solid_angle,
                            std::uint32_t row, std::span<const MixedRow> others);

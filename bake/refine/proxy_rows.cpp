@@ -17,7 +17,7 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::uint32_t kLampSamples = 16;
+constexpr std::uint32_t kLampSamples = 8;  // of each estimate
 constexpr double kBrightest = 1e30;  // [lx]: differences and sums of brighter ones would overflow
 
 }  // namespace
@@ -95,7 +95,7 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
     rows.hidden.push_back(is_hidden_there ? 1 : 0);
     std::array<std::vector<float>, 2> transport;
     transport.fill(std::vector<float>(rows.cells));
-    std::vector<float> irradiance(rows.lamps, 0.0f);
+    std::vector<float> irradiance(2 * rows.lamps, 0.0f);  // of the estimates
     std::uint64_t traced = 0;
     if (!is_hidden_there) {
         const glm::vec3 behind = 2.0f * sample.position - front.origin;
@@ -112,10 +112,13 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
             }
         }
         for (std::size_t i = 0; i < lamps_.size(); ++i) {
-            const glm::dvec3 light =
-                straight_irradiance(rays_, lamps_[i], front, kLampSamples, traced, &volumes_);
-            irradiance[std::min(i, rows.lamps - 1)] +=
-                static_cast<float>(std::min(light.x + light.y + light.z, kBrightest));
+            for (std::uint32_t estimate = 0; estimate < 2; ++estimate) {
+                const glm::dvec3 light =
+                    straight_irradiance(rays_, lamps_[i], front, kLampSamples, traced, &volumes_,
+                                        estimate * kLampSamples);
+                irradiance[estimate * rows.lamps + std::min(i, rows.lamps - 1)] +=
+                    static_cast<float>(std::min(light.x + light.y + light.z, kBrightest));
+            }
         }
     }
     for (const std::vector<float>& own : transport) {

@@ -34,19 +34,19 @@ struct ProxyPoint {
 ///  - into a medium, max(0, -n.w) T(d): d is how far [m] the body goes there, and T(d) =
 ///    e^(-sigma_eff d) / (1 + 3/4 sigma_s' d) what diffuses as far, with sigma_eff = sqrt(3 sigma_a
 ///    (sigma_a + sigma_s')).
-/// Of each lamp, its straight irradiance [lx] outside.
+/// Of each lamp, its straight irradiance [lx] outside, twice, too.
 struct ProxyRows {
     std::size_t cells = 0, lamps = 0;
-    std::vector<std::uint8_t> cell;  ///< of the first estimate, then of the second
-    std::vector<float> lamp;
+    std::vector<std::uint8_t> cell;    ///< of the first estimate, then of the second
+    std::vector<float> lamp;           ///< likewise
     std::vector<std::uint8_t> hidden;  ///< 1: inside a closed body, where nobody sees it; all 0
 
     std::size_t size() const { return hidden.size(); }
     std::span<const std::uint8_t> cells_of(std::size_t row, std::size_t estimate) const {
         return std::span(cell).subspan((2 * row + estimate) * cells, cells);
     }
-    std::span<const float> lamps_of(std::size_t row) const {
-        return std::span(lamp).subspan(row * lamps, lamps);
+    std::span<const float> lamps_of(std::size_t row, std::size_t estimate) const {
+        return std::span(lamp).subspan((2 * row + estimate) * lamps, lamps);
     }
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -104,7 +105,7 @@ std::vector<const GlowingTriangle*> triangles_from(const LampSources& lamp,
 }
 
 glm::dvec3 from_triangles(const LampSources& lamp, const Receiver& receiver, std::uint32_t samples,
-                          ShadowRays shadow) {
+                          std::uint32_t first, ShadowRays shadow) {
     const glm::dvec3 point(receiver.origin), normal(receiver.normal);
     const std::vector<const GlowingTriangle*> triangles = triangles_from(lamp, point);
     std::vector<double> factor(triangles.size()), cumulative(triangles.size());
@@ -119,11 +120,13 @@ glm::dvec3 from_triangles(const LampSources& lamp, const Receiver& receiver, std
     }
     if (!(sum > 0)) return glm::dvec3(0);
     glm::dvec3 all(0);
+    double whole = 0;
+    const double offset = std::modf(0.5 + first / std::numbers::phi, &whole);
     for (std::uint32_t i = 0; i < samples; ++i) {
-        const double at = (i + 0.5) / samples * sum;
+        const double at = (i + offset) / samples * sum;
         const std::size_t t = part_of_sum(cumulative, at);
         const GlowingTriangle& triangle = *triangles[t];
-        const glm::dvec2 uv = spread_point(glm::dvec2(0.5), i + 1);
+        const glm::dvec2 uv = spread_point(glm::dvec2(0.5), first + i + 1);
         const glm::dvec3 way = sample_triangle_folded(triangle.corner, uv.x, uv.y).P - point;
         const double distance = glm::length(way);
         // Its mean over the triangle is radiance / largest: the choice is in proportion to both.
@@ -183,10 +186,11 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
 
 glm::dvec3 straight_irradiance(const RayScene& scene, const LampSources& lamp,
                                const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays,
-                               const DensitySpace* volumes) {
+                               const DensitySpace* volumes, std::uint32_t first) {
     if (receiver.normal == glm::vec3(0)) return glm::dvec3(0);
     const ShadowRays shadow(scene, receiver, rays, volumes);
-    return from_triangles(lamp, receiver, samples, shadow) + from_lights(lamp, receiver, shadow);
+    return from_triangles(lamp, receiver, samples, first, shadow) +
+           from_lights(lamp, receiver, shadow);
 }
 
 }  // namespace opaline::bake

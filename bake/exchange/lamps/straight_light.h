@@ -23,9 +23,9 @@ double triangle_irradiance(const GlowingTriangle& triangle, const glm::dvec3& po
 /// irradiance, times the mean visibility of `samples` points, spread
 /// over them in proportion to it: without noise where nothing or all is hidden. Lights: one shadow
 /// ray each. Light of voxels: glow_light.h. `volumes` dim all; null: none. `rays` counts those
-/// traced.
+/// traced. `first`: so many points of the sequence are left out, for an estimate by others.
 glm::dvec3 straight_irradiance(const RayScene& scene, const LampSources& lamp,
                                const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays,
-                               const DensitySpace* volumes = nullptr);
+                               const DensitySpace* volumes = nullptr, std::uint32_t first = 0);
 
 }  // namespace opaline::bake

@@ -150,6 +150,20 @@ TEST(RefineScene, ALampCloseToAFloorGetsReceiversBelowIt) {
     EXPECT_LT(error, 0.06);
 }
 
+// A lamp as wide as what hides it: half of the floor lies in its penumbra, which a few rays see in
+// steps. 300 receivers; by one estimate 43,000.
+TEST(RefineScene, StepsOfAPenumbraSeenByAFewRaysAddFewReceivers) {
+    Scene scene = tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}),
+                                     tests::make_sphere(3, 0.3f, {0.3f, 1.6f, 0.2f}),
+                                     tests::make_sphere(2, 0.3f, {0, 0.8f, 0})});
+    scene.materials.resize(2);
+    scene.primitives[1].material = 1;
+    scene.materials[1].emission = {1000, 1000, 1000};
+    RefineLimits limits = some_limits(0.02);
+    limits.most_added = 2000;
+    EXPECT_LT(refine(scene, limits).report.added, 700u);
+}
+
 // Light reaches through a bar as far as it diffuses: of a dense one that is shorter than its sides.
 TEST(RefineScene, MediaGetReceiversWhereTheyAreThin) {
     Scene scene = tests::make_scene({tests::make_cube(1, false)});
