@@ -57,20 +57,38 @@ BodiesAt::BodiesAt(const formats::Scene& scene, const EmbreeScene& triangles)
         triangles.triangles() > 0 ? kSteps * std::max({farthest.x, farthest.y, farthest.z}) : 0;
 }
 
-std::uint32_t BodiesAt::collect(glm::vec3 from, glm::vec3 direction, float reach,
-                                std::vector<Crossed>& crossed) const {
-    crossed.clear();
-    Query query{{}, *this, crossed};
-    rtcInitIntersectContext(&query.embree);
-    query.embree.filter = &Query::note;
+namespace {
+
+RTCRayHit ray_from(glm::vec3 from, glm::vec3 direction, float reach) {
     RTCRayHit ray{};
     ray.ray.org_x = from.x, ray.ray.org_y = from.y, ray.ray.org_z = from.z;
     ray.ray.dir_x = direction.x, ray.ray.dir_y = direction.y, ray.ray.dir_z = direction.z;
     ray.ray.tfar = reach;
     ray.ray.mask = 0xffffffffu;
     ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    return ray;
+}
+
+}  // namespace
+
+std::uint32_t BodiesAt::collect(glm::vec3 from, glm::vec3 direction, float reach,
+                                std::vector<Crossed>& crossed) const {
+    crossed.clear();
+    Query query{{}, *this, crossed};
+    rtcInitIntersectContext(&query.embree);
+    query.embree.filter = &Query::note;
+    RTCRayHit ray = ray_from(from, direction, reach);
     rtcIntersect1(triangles_->handle(), &query.embree, &ray);
     return query.others;
+}
+
+std::optional<float> BodiesAt::find_next(glm::vec3 from, glm::vec3 direction) const {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit ray = ray_from(from, direction, std::numeric_limits<float>::infinity());
+    rtcIntersect1(triangles_->handle(), &context, &ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+    return ray.ray.tfar;
 }
 
 void BodiesAt::count(glm::vec3 point, std::vector<int>& bodies) const {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,9 @@ class BodiesAt {
         }
         return others;
     }
+
+    /// The way from there to the next triangle of any material [m].
+    std::optional<float> find_next(glm::vec3 from, glm::vec3 direction) const;
 
     /// Whether a triangle of a chosen material lies on another triangle of one, by their middles.
     bool has_faces_on_faces(const formats::Scene& scene,

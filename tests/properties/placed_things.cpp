@@ -155,7 +155,9 @@ bool loses_light_inside(const std::vector<PlacedThing>& things) {
                 things[j].kind == ThingKind::volume || things[j].kind == ThingKind::glow)
                 continue;
             const bool is_dense = things[i].kind == ThingKind::medium && things[i].depth > kDense;
-            if (is_body(things[j]) && is_dense) continue;
+            const bool are_clear =
+                things[i].kind == ThingKind::clear && things[j].kind == ThingKind::clear;
+            if (is_body(things[j]) && (is_dense || are_clear)) continue;
             const double near = (is_body(things[j]) ? kNear : -kNear) * things[i].size;
             const glm::dvec3 gap = glm::abs(things[i].at - things[j].at) - half_extent(things[i]) -
                                    half_extent(things[j]);

@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "bake/effects/multiple/walks/band_weights.h"
-#include "bake/effects/multiple/walks/walk_boundary.h"
 #include "bake/effects/multiple/walks/walk_space.h"
+#include "bake/trace/cross_bodies.h"
 #include "tests/stability/stability_row.h"
 
 // Random walks. Most of their hard cases are means over walks, and tests of their own.

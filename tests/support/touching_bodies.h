@@ -9,6 +9,25 @@
 
 namespace opaline::tests {
 
+/// A body's surface and what fills it.
+using Part = std::pair<Primitive, formats::Medium>;
+
+/// One material for each part.
+inline Scene make_nested_scene(std::vector<Part> parts) {
+    std::vector<Primitive> surfaces;
+    for (std::uint32_t m = 0; m < parts.size(); ++m) {
+        surfaces.push_back(std::move(parts[m].first));
+        surfaces.back().material = m;
+    }
+    Scene scene = make_scene(std::move(surfaces));
+    scene.materials.resize(parts.size(), scene.materials[0]);
+    for (std::size_t m = 0; m < parts.size(); ++m) {
+        scene.materials[m].name = "Part " + std::to_string(m);
+        scene.materials[m].medium = parts[m].second;
+    }
+    return scene;
+}
+
 /// Bodies of cells between the lines of a grid, the same along all axes: `is_solid(i, j, k)`. Each
 /// cell's face has vertices of its own.
 template <class IsSolid>
@@ -89,7 +108,7 @@ inline formats::Medium make_smooth_glass(float eta) {
 /// Several bodies that absorb nothing: everything shows what an even sky shows.
 struct BodiesThatMeet {
     std::string name;
-    std::vector<std::pair<Primitive, formats::Medium>> parts;  ///< a material each
+    std::vector<Part> parts;  ///< a material each
 };
 
 inline std::vector<BodiesThatMeet> make_bodies_that_meet() {

@@ -95,7 +95,7 @@ void leave_out_hidden(const WalkSpace& space, std::vector<SurfaceSample>& sample
     std::vector<SurfaceSample> seen;
     for (const SurfaceSample& s : samples) {
         const glm::vec3 before = s.position + 2 * space.bodies->touch() * s.geometric_normal;
-        if (bodies_around(space, before).empty()) seen.push_back(s);
+        if (bodies_around(*space.bodies, space.place_of, before).empty()) seen.push_back(s);
     }
     if (!seen.empty()) {
         samples = std::move(seen);
@@ -165,8 +165,8 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                  .bands = options.bands,
                  .seed = options.seed,
                  .orders = {options.all_orders ? 1u : 2u,
-                            !options.all_orders && options.light != nullptr, options.fills_crossed,
-                            options.crosses_others}}};
+                            !options.all_orders && options.light != nullptr, options.fills_crossed},
+                 .counts_scattered = options.scales_to_point}};
     std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
     leave_out_hidden(space, sites);
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));

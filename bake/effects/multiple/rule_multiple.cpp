@@ -47,6 +47,10 @@ double diffusion_exponent(double albedo) {
     return low;
 }
 
+bool scatters_nothing(const Medium& medium) {
+    return std::ranges::all_of(bands_of(medium), [](const Band& b) { return !(b.sigma_s > 0); });
+}
+
 double reaches(const Band& band, double g, double eta, double depth) {
     const double straight = std::exp(-band.sigma_a * depth);
     const double reduced = (1 - g) * band.sigma_s, sigma_t = reduced + band.sigma_a;
@@ -132,8 +136,11 @@ double share_that_reaches(const formats::Medium& medium, double depth) {
 
 double layer_bound(const formats::Medium& medium, const MaterialFacts& body) {
     double nearest = HUGE_VAL;
+    // What crosses clear bodies alone is the light of `transmission`.
+    const bool is_clear = scatters_nothing(medium);
     for (const InnerMedium& inner : body.inner) {
-        if (!is_same_medium(medium, inner.medium)) {
+        if (!is_same_medium(medium, inner.medium) &&
+            !(is_clear && scatters_nothing(inner.medium))) {
             nearest = std::min(nearest, inner.depth);
         }
     }

@@ -20,21 +20,26 @@ struct CrossedBody {
     bake::StraightBody body;
 };
 
+/// The first material of the scene and all other media. `meets`: of StraightBody.
+inline std::unique_ptr<CrossedBody> make_crossed_scene(Scene scene, bool meets = false) {
+    auto crossed = std::make_unique<CrossedBody>();
+    crossed->scene = std::move(scene);
+    crossed->rays.emplace(bake::RayScene::build(crossed->scene, 1).value());
+    crossed->sky.emplace(bake::RayScene::build({}, 1).value());
+    std::vector<std::uint32_t> inner;
+    for (std::uint32_t m = 1; m < crossed->scene.materials.size(); ++m) {
+        if (crossed->scene.materials[m].medium) inner.push_back(m);
+    }
+    crossed->body = bake::make_straight_body(crossed->scene, *crossed->rays, 0, inner, meets);
+    crossed->body.bands = 1;
+    return crossed;
+}
+
 /// Material 0 of the primitives is the medium.
 inline std::unique_ptr<CrossedBody> make_crossed(std::vector<Primitive> primitives, double eta,
                                                  float sigma_t) {
-    auto crossed = std::make_unique<CrossedBody>();
-    crossed->scene =
-        make_translucent_scene(std::move(primitives), make_grey_medium(0, sigma_t, float(eta)));
-    crossed->rays.emplace(bake::RayScene::build(crossed->scene, 1).value());
-    crossed->sky.emplace(bake::RayScene::build({}, 1).value());
-    bake::StraightBody& body = crossed->body;
-    body.scene = &crossed->scene;
-    body.rays = body.sky = &*crossed->rays;
-    body.eta = eta;
-    body.sigma_t = {sigma_t, sigma_t, sigma_t};
-    body.bands = 1;
-    return crossed;
+    return make_crossed_scene(
+        make_translucent_scene(std::move(primitives), make_grey_medium(0, sigma_t, float(eta))));
 }
 
 /// A slab between y = 0 and y = -thickness, practically without an end. Its last vertex lies within
@@ -49,11 +54,21 @@ inline Primitive make_crossed_slab(float thickness) {
     return slab;
 }
 
+/// In the first material alone, or in all bodies around the point.
+inline bake::StraightStart start_in(const CrossedBody& crossed, glm::vec3 from, glm::vec3 vertex) {
+    const bake::StraightBody& body = crossed.body;
+    const std::uint16_t own = body.place_of[0];
+    return {from,
+            body.bodies ? bake::bodies_at_start(*body.bodies, body.place_of, own, from)
+                        : bake::MediumStack(own, 1),
+            vertex};
+}
+
 /// What one view finds, in order of its exits.
 inline std::vector<bake::StraightExit> look(const CrossedBody& crossed, glm::vec3 from,
                                             glm::vec3 seen) {
     bake::StraightLight found;
-    bake::follow_straight(crossed.body, {from, 1, from}, {&seen, 1}, found);
+    bake::follow_straight(crossed.body, start_in(crossed, from, from), {&seen, 1}, found);
     return found.exits;
 }
 
@@ -69,7 +84,7 @@ inline double sum_of(const std::vector<bake::StraightExit>& exits) {
 inline double mean_over(const CrossedBody& crossed, glm::vec3 from,
                         const bake::TransmissionViews& views) {
     bake::StraightLight found;
-    bake::follow_straight(crossed.body, {from, 1, {}}, views.seen, found);
+    bake::follow_straight(crossed.body, start_in(crossed, from, {}), views.seen, found);
     double mean = 0;
     for (const bake::StraightExit& exit : found.exits) {
         mean += views.weight[exit.view] * double{exit.weight[0]};

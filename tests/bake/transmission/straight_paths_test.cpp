@@ -85,7 +85,7 @@ TEST(StraightPaths, WhatStandsBehindABodyStandsApartFromTheSkyAndWithItMakesOne)
     const auto slab = tests::make_crossed({tests::make_crossed_slab(1), floor_below()}, 1.5, 0);
     StraightLight found;
     const glm::vec3 from{0.1f, -1e-4f, 0.2f};
-    follow_straight(slab->body, {from, 1, from}, {&kUp, 1}, found);
+    follow_straight(slab->body, tests::start_in(*slab, from, from), {&kUp, 1}, found);
     for (const StraightExit& exit : found.exits) {
         EXPECT_GT(exit.direction.y, 0);
     }
@@ -96,7 +96,7 @@ TEST(StraightPaths, WhatStandsBehindABodyStandsApartFromTheSkyAndWithItMakesOne)
     EXPECT_NEAR(tests::sum_of(found.exits) + tests::sum_of(found.blocked), 1, 5e-4);
 }
 
-TEST(StraightPaths, AnotherMaterialInsideEndsThemAndAShellOfTheirOwnDoesNothing) {
+TEST(StraightPaths, WhatIsNoMediumEndsThemInsideAndAShellOfTheirOwnDoesNothing) {
     for (const std::uint32_t material : {0u, 1u}) {
         tests::Primitive inner = tests::make_sphere(2, 0.3f);
         inner.material = material;

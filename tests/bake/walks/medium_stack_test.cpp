@@ -1,4 +1,4 @@
-#include "bake/effects/multiple/walks/medium_stack.h"
+#include "bake/trace/medium_stack.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ TEST(MediumStack, TheLastInTheirOrderFillsTheSpaceWhicheverWasEnteredFirst) {
     EXPECT_EQ(stack.top(), 1);
     EXPECT_TRUE(stack.contains(0));
     stack.leave(1);
-    EXPECT_TRUE(stack.is_only(0));
+    EXPECT_EQ(stack.top(), 0);
     stack.leave(0);
     EXPECT_TRUE(stack.empty());
 }

@@ -1,33 +1,14 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "tests/bake/walks/body_walks.h"
+#include "tests/support/touching_bodies.h"
 
 namespace opaline::tests {
-
-/// A body's surface and what fills it.
-using Part = std::pair<Primitive, formats::Medium>;
-
-/// One material for each part.
-inline Scene make_nested_scene(std::vector<Part> parts) {
-    std::vector<Primitive> surfaces;
-    for (std::uint32_t m = 0; m < parts.size(); ++m) {
-        surfaces.push_back(std::move(parts[m].first));
-        surfaces.back().material = m;
-    }
-    Scene scene = make_scene(std::move(surfaces));
-    scene.materials.resize(parts.size(), scene.materials[0]);
-    for (std::size_t m = 0; m < parts.size(); ++m) {
-        scene.materials[m].name = "Part " + std::to_string(m);
-        scene.materials[m].medium = parts[m].second;
-    }
-    return scene;
-}
 
 /// The first part, for walks that pass through all others.
 inline std::unique_ptr<WalkedBody> make_nested_body(std::vector<Part> parts, bool grey = true) {

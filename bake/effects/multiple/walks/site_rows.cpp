@@ -218,7 +218,7 @@ SiteRows walk_from_sites(const WalkSpace& space, std::span<const WalkStart> star
             SiteWalker walker(space, light, view_fit, options);
             for (std::size_t site = range.begin; site < range.end; ++site) {
                 std::array<float, 3>* share = nullptr;
-                if (options.orders.crosses_others) {
+                if (options.counts_scattered) {
                     share = &part.scattered.emplace_back(std::array<float, 3>{1, 1, 1});
                 }
                 if (!is_read.empty() && is_read[site] == 0) {

@@ -26,7 +26,7 @@ struct SiteRows {
     std::vector<Block> blocks;  ///< each of kPerBlock sites, the last of as many or fewer
     std::uint32_t bands = 3;    ///< or 1
     std::uint32_t views = 1;    ///< rows of a site: 1, 4 or 9
-    /// WalkCounts::scattered_share of each site, where WalkOrders::crosses_others; else none.
+    /// WalkCounts::scattered_share of each site, where SiteRowOptions say so; else none.
     std::vector<std::array<float, 3>> scattered;
 };
 
@@ -38,6 +38,7 @@ struct SiteRowOptions {
     std::uint32_t walks_per_site = 64;  ///< for each group of bands, >= 1
     std::uint64_t seed = 0;
     WalkOrders orders;
+    bool counts_scattered = false;  ///< SiteRows::scattered
 };
 
 /// Where walks start from a site.

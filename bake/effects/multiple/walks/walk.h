@@ -9,9 +9,9 @@
 
 #include "bake/base/rng.h"
 #include "bake/effects/multiple/walks/band_weights.h"
-#include "bake/effects/multiple/walks/medium_stack.h"
 #include "bake/effects/multiple/walks/walk_counts.h"
 #include "bake/effects/multiple/walks/walk_space.h"
+#include "bake/trace/medium_stack.h"
 
 namespace opaline::bake {
 
@@ -108,11 +108,7 @@ struct WalkOrders {
     bool marks_once = false;
     /// Light that leaves the body unscattered counts as bright as the rest: nothing else holds it.
     bool fills_crossed = false;
-    /// Light that is not scattered counts where it went through another body: `transmission` holds
-    /// what stays in its own.
-    bool crosses_others = false;
-    /// Walks end where they are scattered or meet another body: what is left is their share of
-    /// light that does neither.
+    /// Walks end where they are scattered: what is left is their share of light that is not.
     bool is_straight_alone = false;
 };
 

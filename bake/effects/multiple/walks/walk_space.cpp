@@ -67,10 +67,7 @@ void add_band(std::size_t band, std::span<const formats::Medium* const> distinct
     for (const formats::Medium* medium : distinct) {
         sigma_t.push_back(flight_extinction(*medium, band));
     }
-    // Clear bodies in each other have light that crosses them all.
-    if (sigma_t.size() == 1 && sigma_t.front() == 0) {
-        return;
-    }
+    if (std::ranges::all_of(sigma_t, [](float s) { return s == 0; })) return;
     std::size_t group = 0;
     const auto fits = [&] {
         for (std::size_t m = 0; m < sigma_t.size(); ++m) {
@@ -128,8 +125,9 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
         }
     }
     const BodiesAt bodies(scene, triangles);
-    space.place_of.assign(scene.materials.size(), 0);
+    space.place_of.assign(scene.materials.size(), kNoPlace);
     for (const std::uint32_t m : bodies.order()) {
+        if (space.medium_of[m] == kNoWalkMedium) continue;
         if (space.medium_at.empty() || space.medium_at.back() != space.medium_of[m]) {
             space.medium_at.push_back(space.medium_of[m]);
             space.material_at.push_back(m);
@@ -176,23 +174,8 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     return space;
 }
 
-MediumStack bodies_around(const WalkSpace& space, glm::vec3 point) {
-    std::vector<int> count;
-    space.bodies->count(point, count);
-    MediumStack around;
-    for (std::size_t i = 0; i < count.size(); ++i) {
-        const std::uint32_t material = space.bodies->order()[i];
-        for (int n = 0; n < count[i] && space.medium_of[material] != kNoWalkMedium; ++n) {
-            around.enter(space.place_of[material]);
-        }
-    }
-    return around;
-}
-
 MediumStack bodies_at_start(const WalkSpace& space, glm::vec3 point) {
-    const std::uint16_t own = space.place_of[space.material];
-    const MediumStack around = bodies_around(space, point);
-    return around.contains(own) ? around : MediumStack(own, 1);
+    return bodies_at_start(*space.bodies, space.place_of, space.place_of[space.material], point);
 }
 
 int count_shells(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {

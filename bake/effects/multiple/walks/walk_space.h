@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bake/effects/multiple/walks/ball_bank.h"
-#include "bake/effects/multiple/walks/medium_stack.h"
 #include "bake/scene/medium_field.h"
 #include "bake/trace/bodies_at.h"
 #include "bake/trace/clearance_grid.h"
+#include "bake/trace/cross_bodies.h"
 #include "bake/trace/embree_scene.h"
 #include "formats/scene.h"
 
@@ -75,7 +75,8 @@ struct WalkSpace {
     /// there.
     std::vector<std::uint8_t> medium_of;
     /// Of each material, its place in order_media, where those of one medium that follow one
-    /// another share a place; of each place, its medium and first material.
+    /// another share a place (kNoPlace: walks end there); of each place, its medium and first
+    /// material.
     std::vector<std::uint16_t> place_of;
     std::vector<std::uint8_t> medium_at;
     std::vector<std::uint32_t> material_at;
@@ -99,9 +100,8 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
                           std::uint32_t material, bool grey,
                           std::span<const std::uint32_t> inner = {}, bool meet = false);
 
-/// The bodies of the space's media around a point. Precondition: WalkSpace::bodies.
-MediumStack bodies_around(const WalkSpace& space, glm::vec3 point);
-/// The same just below the surface of the space's material; that alone where edges hide it.
+/// The bodies of the space's media just below the surface of its own; that alone where edges hide
+/// it. Precondition: WalkSpace::bodies.
 MediumStack bodies_at_start(const WalkSpace& space, glm::vec3 point);
 
 /// Number of the medium's shells around a point, counted along lines to infinity: every surface of
