@@ -26,6 +26,7 @@ void cross_all(const BodiesAt& bodies, std::span<const std::uint16_t> place_of,
         (far.side < 0 ? far.bodies.enter(arrival.place) : far.bodies.leave(arrival.place))) {
         return;
     }
+    far.is_several = met > 1;
     far.lift = bodies.touch();
     ++rays;
     const glm::vec3 from = arrival.position + reach * arrival.direction;
@@ -59,7 +60,7 @@ MediumStack bodies_at_start(const BodiesAt& bodies, std::span<const std::uint16_
 FarSide find_far_side(const BodiesAt* meeting, std::span<const std::uint16_t> place_of,
                       const MediumStack& before, const BodyArrival& arrival, std::uint64_t& rays) {
     FarSide far{before, glm::dot(arrival.direction, arrival.flat) > 0 ? 1.0f : -1.0f,
-                2 * arrival.error, true};
+                2 * arrival.error, true, false};
     if (meeting != nullptr) {
         cross_all(*meeting, place_of, arrival, rays, far);
     } else if (far.side > 0) {

@@ -23,9 +23,10 @@ struct BodyArrival {
 /// What lies beyond a surface that a flight has met.
 struct FarSide {
     MediumStack bodies;
-    float side = 1;        ///< where the triangle's normal points along the flight, else -1
-    float lift = 0;        ///< [m], clear of the surface
-    bool has_room = true;  ///< false: it lies in more materials than a stack holds
+    float side = 1;           ///< where the triangle's normal points along the flight, else -1
+    float lift = 0;           ///< [m], clear of the surface
+    bool has_room = true;     ///< false: it lies in more materials than a stack holds
+    bool is_several = false;  ///< several faces lie there on one another
 };
 
 /// No body of these materials is followed.

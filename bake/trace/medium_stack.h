@@ -18,6 +18,7 @@ class MediumStack {
     MediumStack(std::uint16_t place, int bodies) : size_(1) { entry_[0] = {place, bodies}; }
 
     bool empty() const { return size_ == 0; }
+    bool is_only(std::uint16_t place) const { return size_ == 1 && entry_[0].place == place; }
     bool contains(std::uint16_t place) const {
         for (std::size_t i = 0; i < size_; ++i) {
             if (entry_[i].place == place) return true;

@@ -212,7 +212,8 @@ ModelError measure_views(const EffectInputs& inputs, const MediumProfile& profil
                 profile.exit,     kFromEach,  -into};
             const auto key = static_cast<std::uint32_t>(number * set.into.size() + seen.size());
             seen.push_back(walk_to_lights(pilot.space, light, point,
-                                          {1, false, inputs.layout.fills_crossed},
+                                          {1, false, inputs.layout.fills_crossed,
+                                           inputs.layout.layered && inputs.layout.crosses},
                                           inputs.knobs.seed, key, squares.rays));
         }
         compare_views(set, seen, squares);

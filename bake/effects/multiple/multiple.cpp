@@ -236,7 +236,7 @@ TwoEstimates eval(const EffectInputs& inputs, const Prepared& prepared,
          truth.points, seen_of(inputs, receiver), other},
         receiver.inside,
         {inputs.layout.all_orders ? 1u : 2u, !inputs.layout.all_orders && other != nullptr,
-         inputs.layout.fills_crossed},
+         inputs.layout.fills_crossed, inputs.layout.layered && inputs.layout.crosses},
         inputs.knobs.seed, receiver.key, rays);
 }
 

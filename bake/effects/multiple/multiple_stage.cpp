@@ -165,8 +165,9 @@ void walk(const WalkSpace& space, const SitePlan& plan, const EnteringLight& ent
                  .bands = options.bands,
                  .seed = options.seed,
                  .orders = {options.all_orders ? 1u : 2u,
-                            !options.all_orders && options.light != nullptr, options.fills_crossed},
-                 .counts_scattered = options.scales_to_point}};
+                            !options.all_orders && options.light != nullptr, options.fills_crossed,
+                            options.crosses_others},
+                 .counts_scattered = options.crosses_others}};
     std::vector<SurfaceSample> sites = place_sites(space, plan, options.seed, context);
     leave_out_hidden(space, sites);
     const glm::vec3 scale(static_cast<float>(1 / (std::numbers::pi * stage.medium.exit)));

@@ -55,8 +55,7 @@ struct MultipleOptions {
     bool layered = false;                ///< and these matter: the dipole cannot be used
     const OtherLight* light = nullptr;   ///< besides, or instead of, that of the environment
     bool meet = false;                   ///< surfaces of these media touch or overlap
-    /// Rows of walks are scaled to what scatters at each point: other rows hold what does not.
-    bool scales_to_point = false;
+    bool crosses_others = false;         ///< as WalkOrders says
 };
 
 /// Samples the surface of the material's medium with profile `medium`, traces the entering light,

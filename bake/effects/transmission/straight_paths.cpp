@@ -147,7 +147,8 @@ class Follower {
     // False: nothing of the view goes on.
     bool arrive(Lane& lane, const PacketHits& hits, std::uint32_t i) {
         const std::uint16_t place = body_.place_of[hits.material[i]];
-        if (place == kNoPlace) {
+        const std::uint16_t own = body_.place_of[body_.material];
+        if (place == kNoPlace || (body_.ends_at_others && place != own)) {
             StraightExit met{lane.view, lane.direction, lane.weight, lane.position};
             const float eta = medium_of(lane).eta;
             for (float& weight : met.weight) {
@@ -169,6 +170,10 @@ class Follower {
                            at.error, hits.u[i], hits.v[i], place},
                           traced_);
         if (!far.has_room) return false;
+        if (body_.ends_at_others &&
+            (far.is_several || !(far.bodies.empty() || far.bodies.is_only(own)))) {
+            return false;
+        }
         if (far.bodies.empty()) {
             if (lane.arrivals == 0 && is_around_vertex(hits, i)) {
                 found_.past.push_back(lane.view);
@@ -338,6 +343,7 @@ StraightBody make_straight_body(const EffectInputs& inputs) {
     StraightBody body =
         make_straight_body(inputs.bake.scene, inputs.bake.rays, inputs.material, inner, meets);
     body.sky = &inputs.outside();
+    body.ends_at_others = inputs.layout.layered;
     body.bands = inputs.layout.bands();
     return body;
 }
@@ -356,6 +362,7 @@ StraightStart make_straight_start(const StraightBody& body, const BodyPoint& poi
 
 std::uint64_t follow_straight(const StraightBody& body, const StraightStart& start,
                               std::span<const glm::vec3> seen, StraightLight& found) {
+    if (body.ends_at_others && !start.bodies.is_only(body.place_of[body.material])) return 0;
     Follower follower(body, found);
     for (std::size_t first = 0; first < seen.size(); first += kLanes) {
         follower.follow(start,

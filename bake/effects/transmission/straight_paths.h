@@ -36,6 +36,7 @@ struct StraightBody {
     std::vector<StraightMedium> media;  ///< by place
     std::optional<BodiesAt> bodies{};   ///< where others may be around a point of its surface
     bool meets = false;                 ///< surfaces of these bodies touch or overlap
+    bool ends_at_others = false;        ///< rows of walks hold what crosses others
 };
 
 /// Of the material's bodies. `inner`: materials of others that light inside may come to. `meets`:

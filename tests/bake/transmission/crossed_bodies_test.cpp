@@ -180,6 +180,18 @@ TEST(CrossedBodies, ThatAbsorbNothingShowAnEvenSky) {
     }
 }
 
+TEST(CrossedBodies, WhereWalksHoldWhatCrossesThemViewsEndAtOthers) {
+    const auto crossed = tests::make_crossed_scene(
+        make_nested_scene({{tests::make_sphere(4), make_smooth_glass(1.5f)},
+                           {tests::make_sphere(4, 0.6f), make_smooth_glass(1.33f)}}));
+    crossed->body.ends_at_others = true;
+    StraightLight found;
+    follow_straight(crossed->body, tests::start_in(*crossed, {0, 0.9999f, 0}, {}), {&kAbove, 1},
+                    found);
+    EXPECT_TRUE(found.exits.empty() && found.blocked.empty());
+    EXPECT_EQ(found.inside.size(), 1u);
+}
+
 // Radiance over the squared index is what stays the same.
 TEST(CrossedBodies, ALampInTwoMediaIsSeenOverTheSquareOfTheIndexThatIsAroundIt) {
     tests::Scene scene = make_nested_scene({{tests::make_sphere(4), make_smooth_glass(1.33f)},

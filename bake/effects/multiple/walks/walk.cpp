@@ -44,6 +44,9 @@ class Walk {
         position_ = start_ = start.position;
         vertex_ = start.vertex;
         free_.set(position_, 0, start.depth);
+        if (!bodies_.is_only(space_.place_of[space_.material])) {
+            meet_other();
+        }
         if (start.arrival != glm::vec3(0)) {
             direction_ = start.arrival;
             if (collide(0)) {
@@ -117,12 +120,23 @@ class Walk {
     }
 
     void count_scatterings(std::uint32_t count) {
-        if (!is_scattered_) {
-            count_absorbed();
-            add_left(1, counts_.scattered);
-            is_scattered_ = true;
-        }
+        take_as_scattered();
         scatterings_ += count;
+    }
+
+    void take_as_scattered() {
+        if (is_scattered_) return;
+        count_absorbed();
+        add_left(1, counts_.scattered);
+        is_scattered_ = true;
+    }
+
+    // Straight light in another body is what no other row holds.
+    void meet_other() {
+        if (orders_.crosses_others && !is_scattered_) {
+            take_as_scattered();
+            is_straight_ = true;
+        }
     }
 
     // Of the light that the walk carries.
@@ -233,6 +247,9 @@ class Walk {
         const FarSide far =
             find_far_side(space_, bodies_, position_, direction_, way, hit, counts_.rays);
         if (!far.has_room) return give_up(counts_.buried);
+        if (!hit.is_own || far.is_several) {
+            meet_other();
+        }
         if (far.bodies.empty()) {
             return hit.is_own || space_.bodies ? arrive_at_boundary(hit, far) : meet();
         }
@@ -251,6 +268,7 @@ class Walk {
     bool change_medium(const WalkHit& hit, const FarSide& far) {
         const std::uint8_t beyond = space_.medium_at[far.bodies.top()];
         const float ratio = space_.media[beyond].eta / medium().eta;
+        meet_other();
         if (!is_matched(ratio)) {
             const Bend bend = bend_at(far.side * smooth_normal(space_, hit), far.side * hit.flat,
                                       direction_, ratio);
@@ -273,8 +291,8 @@ class Walk {
             far.side > 0 ? inner_boundary_normal(space_, hit, direction_) : flat;
         const float cosine = std::min(1.0f, glm::dot(direction_, normal));
         const float passed = boundary_transmittance(cosine, 1 / medium().eta);
-        const bool counts =
-            scatterings_ >= orders_.least || (scatterings_ > 0 && (is_reflected_ || has_changed_));
+        const bool counts = scatterings_ >= orders_.least || is_straight_ ||
+                            (scatterings_ > 0 && (is_reflected_ || has_changed_));
         if (passed > 0 && (counts || (orders_.marks_once && scatterings_ > 0))) {
             leave(hit, normal, cosine, passed);
             exits_.back().is_once = !counts;
@@ -329,7 +347,8 @@ class Walk {
     FreeBall free_;
     std::uint32_t scatterings_ = 0;
     bool is_reflected_ = false, has_changed_ = false;  // inside; medium
-    bool is_scattered_ = false;
+    bool is_scattered_ = false;                        // or taken for it
+    bool is_straight_ = false;  // it went through another body before it scattered
     MediumStack bodies_;
 };
 

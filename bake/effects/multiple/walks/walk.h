@@ -108,7 +108,11 @@ struct WalkOrders {
     bool marks_once = false;
     /// Light that leaves the body unscattered counts as bright as the rest: nothing else holds it.
     bool fills_crossed = false;
-    /// Walks end where they are scattered: what is left is their share of light that is not.
+    /// Light that is not scattered counts where it went through another body: `transmission` holds
+    /// what stays in its own.
+    bool crosses_others = false;
+    /// Walks end where they are scattered or meet another body: what is left is their share of
+    /// light that does neither.
     bool is_straight_alone = false;
 };
 

@@ -216,7 +216,7 @@ float WalkStage::tint(glm::vec3 position, glm::vec3 normal) const {
 
 namespace {
 
-// What scatters at a point over what does at its sites, by band. Rows of
+// What scatters at a point or meets other bodies, over what does at its sites, by band. Rows of
 // `transmission` hold the rest of the point's own light, so that both are all of it.
 glm::vec3 scale_to_own(const WalkStage& stage, const BodyPoint& point,
                        std::span<const SiteWeight> weights) {
