@@ -180,6 +180,7 @@ struct ShadedPart {
     std::uint32_t begin, end, first;
     std::span<Rgb> out;
 
+    bool has(std::uint32_t vertex) const { return vertex >= first && vertex - first < out.size(); }
     Rgb& at(std::uint32_t vertex) const { return out[vertex - first]; }
     std::span<Rgb> from(std::uint32_t vertex, std::uint32_t count) const {
         return out.subspan(vertex - first, count);
@@ -194,7 +195,7 @@ void shade_vertices(const Job& job, const ShadedPart& part) {
     }
 }
 
-// Vertices that share rows, in three steps, since what a vertex shows is seen at an earlier one.
+// Vertices that share rows, in three steps, since what a vertex shows is seen at other ones.
 // Each step may be taken for all vertices before the next one.
 
 // The first vertices of slots. Their slots are consecutive: they are numbered as they appear.
@@ -215,15 +216,31 @@ void sum_first_vertices(const Job& job, const ShadedPart& part) {
     }
 }
 
+// What a slot shows, which its first vertex has where it is among the results.
+Rgb shown_by(const Job& job, const ShadedPart& part, std::uint32_t slot) {
+    const std::uint32_t shown = job.asset.vertex_of(job.number, slot);
+    if (part.has(shown)) return part.at(shown);
+    Rgb sum;
+    sum_slots(job, slot, std::span(&sum, 1));
+    return sum;
+}
+
 void sum_other_vertices(const Job& job, const ShadedPart& part) {
+    const formats::SlotsView& slots = job.asset.slots;
     for (std::uint32_t v = part.begin; v < part.end; ++v) {
-        const std::uint32_t slot = job.asset.slot_of(job.number, v),
-                            shown = job.asset.vertex_of(job.number, slot);
-        if (shown < part.first) {
-            sum_slots(job, slot, part.from(v, 1));
-        } else if (shown != v) {
-            part.at(v) = part.at(shown);
+        const std::uint32_t slot = job.asset.slot_of(job.number, v);
+        if (!slots.is_mixed(v)) {
+            if (job.asset.vertex_of(job.number, slot) != v) part.at(v) = shown_by(job, part, slot);
+            continue;
         }
+        Rgb sum;
+        for (std::size_t k = 0; k < std::size(slots.mix[v].slot); ++k) {
+            const float weight = static_cast<float>(slots.mix[v].weight[k]) / 255;
+            if (weight == 0) continue;
+            sum = sum + weight * displayable(shown_by(
+                                     job, part, slots.mix[v].slot[k] - slots.offset[job.number]));
+        }
+        part.at(v) = sum;
     }
 }
 

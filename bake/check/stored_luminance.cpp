@@ -83,6 +83,18 @@ Luminance relight_point(const formats::AssetView& asset, const CheckPoint& point
     for (std::size_t k = 0; k < point.vertex.size(); ++k) {
         if (point.weight[k] == 0) continue;
         const std::uint32_t v = point.vertex[k];
+        if (asset.slots.is_mixed(v)) {
+            const formats::SlotMix& mix = asset.slots.mix[v];
+            const std::vector<float> h = view_of_rows(layout, point.body.normal, point.behind);
+            for (std::size_t i = 0; i < std::size(mix.slot); ++i) {
+                const std::uint32_t slot = mix.slot[i] - asset.slots.offset[point.primitive];
+                const float share = static_cast<float>(mix.weight[i]) / 255;
+                if (share == 0) continue;
+                add_luminance({asset.transport, range, slot}, h, point.weight[k] * share,
+                              {band, sum});
+            }
+            continue;
+        }
         const std::vector<float> h =
             layout.translucent ? view_from_far(layout, primitive.eta, asset.normal[v], point.view())
                                : view_of_rows(layout, point.body.normal, point.behind);

@@ -94,6 +94,12 @@ void print_receiver_errors(const Json& errors) {
     }
 }
 
+// Vertices that interpolate the rows of others.
+std::size_t count_mixed(const formats::SlotsView& slots) {
+    return static_cast<std::size_t>(
+        std::ranges::count_if(slots.mix, [](const auto& mix) { return !mix.is_one(); }));
+}
+
 Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) {
     const formats::AssetView& view = asset.loaded.view;
     Json info;
@@ -102,6 +108,7 @@ Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) 
     info["cubemap"] = view.cubemap_size;
     info["receivers"] = view.receivers();
     info["slots"] = view.slots.empty() ? view.receivers() : view.slots.vertex.size();
+    info["mixed"] = count_mixed(view.slots);
     info["rows"] = view.transport.rows();
     info["coefficients"] = view.transport.row_offset.back();
     info["code_bits"] = view.transport.code_bits;
@@ -302,8 +309,10 @@ int run(const InfoCommand& options) {
                    : static_cast<double>(view.transport.row_offset.back()) / view.transport.rows(),
                view.transport.code_bits);
     if (!view.slots.empty()) {
-        fmt::print("              {} vertices share the rows of {}\n", view.receivers(),
-                   view.slots.vertex.size());
+        const std::size_t mixed = count_mixed(view.slots);
+        fmt::print("              {} vertices share the rows of {}{}\n", view.receivers(),
+                   view.slots.vertex.size(),
+                   mixed > 0 ? fmt::format(", {} of them interpolated", mixed) : "");
     }
     print_receiver_errors(info["receiver_errors"]);
     print_provenance(info["provenance"]);

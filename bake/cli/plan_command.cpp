@@ -18,6 +18,7 @@
 #include "bake/scene/cancel_flaps.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/orient_bodies.h"
+#include "bake/scene/shared_rows.h"
 
 namespace opaline::cli {
 namespace {
@@ -70,7 +71,13 @@ int run(const PlanCommand& options) {
     const auto evened =
         bake::takes_even_media(effects, knobs) ? bake::even_media(dense) : std::nullopt;
     const formats::Scene& scene = evened ? evened->scene : dense;
-    bake::ScenePlan plan = bake::plan_scene(effects, scene, knobs);
+    bake::SimplifiedScene simplified;
+    if (is_quick_to_refine(scene)) {
+        simplified = require(bake::simplify_for_bake(scene, knobs, context, log));
+    } else if (knobs.simplify) {
+        simplified.slots = bake::find_slots(scene);
+    }
+    bake::ScenePlan plan = bake::plan_scene(effects, scene, std::move(simplified.slots), knobs);
     require(bake::check_lamps(scene, plan.count_emitters(), bake::kEmitters));
     std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, plan.facts);
     if (evened) {

@@ -144,6 +144,11 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
     if (result.refinement.given > 0) {
         report["refinement"] = refinement_json(result.refinement);
     }
+    if (result.simplification.kept < result.simplification.given) {
+        report["simplification"] = {{"receivers_given", result.simplification.given},
+                                    {"receivers_kept", result.simplification.kept},
+                                    {"error", result.simplification.error}};
+    }
     report["output"] = {{"bytes", bytes},
                         {"receivers", result.asset.position.size()},
                         {"slots", slots_of(result.asset)},

@@ -34,6 +34,24 @@ void append_vertices(Asset& asset, const Scene& scene, const Primitive& p, Rgb t
     }
 }
 
+// Of mixed vertices the mean of what others see.
+std::vector<Openness> openness_of_vertices(const SlotsView& slots, std::vector<Openness> of_slots) {
+    std::vector<Openness> of_vertices = spread_to_vertices(slots, of_slots);
+    for (std::uint32_t v = 0; v < of_vertices.size(); ++v) {
+        if (!slots.is_mixed(v)) continue;
+        Vec3 axis{};
+        float open = 0;
+        for (std::size_t k = 0; k < std::size(slots.mix[v].slot); ++k) {
+            const Openness& seen = of_slots[slots.mix[v].slot[k]];
+            const float weight = static_cast<float>(slots.mix[v].weight[k]) / 255;
+            axis = axis + weight * open_fraction(seen) * open_axis(seen);
+            open += weight * open_fraction(seen);
+        }
+        of_vertices[v] = encode_openness(axis, open);
+    }
+    return of_vertices;
+}
+
 PreviewImageData to_preview(const Image8& image) {
     PreviewImageData preview{image.width, image.height, {}};
     preview.rgb.reserve(image.rgba.size() / 4 * 3);
@@ -122,7 +140,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
                      [](const GlossRecord& g) { return g.is_glossy(); })) {
         asset.gloss.clear();
     }
-    asset.openness = spread_to_vertices(slots.view(), std::move(openness));
+    asset.openness = openness_of_vertices(slots.view(), std::move(openness));
     asset.slots = std::move(slots);
     asset.transport = std::move(transport);
     return asset;

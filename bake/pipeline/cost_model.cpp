@@ -65,7 +65,9 @@ double mesh_bytes(const formats::Scene& scene, const SceneFacts& facts) {
     constexpr double kCompressed = 0.5;
     const double vertex = scene.images.empty() ? 36 : 44;
     double bytes = count_vertices(scene) * vertex + facts.triangles * 12 +
-                   static_cast<double>(facts.slots.slot.size() + facts.slots.vertex.size()) * 4;
+                   static_cast<double>(facts.slots.slot.size() + facts.slots.vertex.size() +
+                                       2 * facts.slots.mix.size()) *
+                       4;
     for (const formats::Image8& image : scene.images) {
         bytes += static_cast<double>(image.rgba.size()) * 3 / 4;
     }

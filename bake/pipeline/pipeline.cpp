@@ -38,6 +38,25 @@
 namespace opaline::bake {
 namespace {
 
+// Leaves the receivers that are slots, of those of all places.
+void keep_slots(const formats::SlotsView& slots, std::vector<ReceiverSet>& sets) {
+    std::uint32_t place = 0, next = 0;
+    for (ReceiverSet& set : sets) {
+        const std::uint32_t end = place + static_cast<std::uint32_t>(set.size());
+        ReceiverSet kept = set;
+        kept.first = next;
+        kept.outside.clear();
+        kept.inside.clear();
+        while (next < slots.vertex.size() && slots.place[slots.vertex[next]] < end) {
+            const std::uint32_t i = slots.place[slots.vertex[next++]] - place;
+            kept.outside.push_back(set.outside[i]);
+            kept.inside.push_back(set.inside[i]);
+        }
+        set = std::move(kept);
+        place = end;
+    }
+}
+
 std::vector<ReceiverSet> place_receivers(const formats::Scene& scene, const SceneFacts& facts,
                                          const RayScene& rays, const Context& context) {
     std::vector<Receiver> vertices =
@@ -250,8 +269,12 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
         std::ranges::copy(evened->warnings, std::back_inserter(result.warnings));
     }
     const formats::Scene& scene = evened ? evened->scene : facing;
-    ScenePlan plan =
-        run_stage(log, "plan", [&](std::uint64_t&) { return plan_scene(effects, scene, wanted); });
+    formats::Result<SimplifiedScene> simplified = simplify_for_bake(scene, wanted, context, log);
+    if (!simplified) return std::move(simplified).error();
+    result.simplification = simplified->report;
+    ScenePlan plan = run_stage(log, "plan", [&](std::uint64_t&) {
+        return plan_scene(effects, scene, std::move(simplified->slots), wanted);
+    });
     result.plan = std::move(plan.entries);
     result.facts = std::move(plan.facts);
     if (auto status = check_lamps(scene, plan.count_emitters(), kEmitters); !status) {
@@ -273,9 +296,12 @@ formats::Result<BakeResult> run_bake(const EffectTable& effects, const formats::
     }
     const RayScene& rays = hierarchy ? *hierarchy : *sky;
     const std::vector<ReceiverSet> receivers = run_stage(log, "receivers", [&](std::uint64_t&) {
-        const formats::SlotsView slots = result.facts.slots.view();
-        return place_receivers(slots.empty() ? scene : merge_vertices(scene, slots), result.facts,
-                               rays, context);
+        const formats::Slots places = places_of(scene, result.facts.slots);
+        std::vector<ReceiverSet> sets =
+            place_receivers(places.empty() ? scene : merge_vertices(scene, places.view()),
+                            result.facts, rays, context);
+        if (!result.facts.slots.mix.empty()) keep_slots(result.facts.slots.view(), sets);
+        return sets;
     });
     BakeInputs bake{effects, scene, result.facts, rays, *sky, receivers};
     std::optional<ScenePyramids> textures;

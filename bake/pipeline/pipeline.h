@@ -11,6 +11,7 @@
 #include "bake/effects/layers/layer_error.h"
 #include "bake/pipeline/choose_knobs.h"
 #include "bake/refine/refine_scene.h"
+#include "bake/refine/simplify_scene.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {
@@ -29,6 +30,7 @@ struct BakeResult {
     std::vector<PlanEntry> plan;         ///< as ScenePlan::entries, with what the stages found
     SceneFacts facts;                    ///< that the plan was decided from
     RefineReport refinement;
+    SimplifyReport simplification;  ///< given 0: not asked for
     std::optional<formats::Scene>
         scene;  ///< with the receivers that were added; none were: nothing
     StageLog stages;

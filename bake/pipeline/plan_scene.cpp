@@ -10,11 +10,12 @@
 
 namespace opaline::bake {
 
-ScenePlan plan_scene(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs) {
+ScenePlan plan_scene(const EffectTable& effects, const formats::Scene& scene, formats::Slots slots,
+                     const Knobs& knobs) {
     VolumePlan volumes = plan_volumes(scene, knobs);
     LayerPlan layers = plan_layers(scene, knobs);
     EmitterPlan emitters = plan_emitters(scene, knobs);
-    ScenePlan plan{inspect_scene(scene, knobs.simplify),
+    ScenePlan plan{inspect_scene(scene, std::move(slots)),
                    {},
                    std::move(volumes.layouts),
                    std::move(layers.layouts),

@@ -24,6 +24,8 @@ struct ScenePlan {
     }
 };
 
-ScenePlan plan_scene(const EffectTable& effects, const formats::Scene& scene, const Knobs& knobs);
+/// `slots`: of vertices that share rows, or mix them (simplify_for_bake).
+ScenePlan plan_scene(const EffectTable& effects, const formats::Scene& scene, formats::Slots slots,
+                     const Knobs& knobs);
 
 }  // namespace opaline::bake

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -21,11 +22,27 @@ struct Fineness {
     std::uint64_t least_more;
     double probes_per_receiver;
     std::uint32_t cubemap_size;
+    std::size_t simplify_points;  // SimplifyLimits::points
 };
-constexpr std::array<Fineness, 4> kFineness{{{0.10, 1, 4000, 0.1, 8},
-                                             {0.045, 2, 20000, 0.25, 8},
-                                             {0.025, 4, 80000, 0.5, 16},
-                                             {0.015, 8, 200000, 0.5, 16}}};
+constexpr std::array<Fineness, 4> kFineness{{{0.10, 1, 4000, 0.1, 8, 512},
+                                             {0.045, 2, 20000, 0.25, 8, 768},
+                                             {0.025, 4, 80000, 0.5, 16, 1024},
+                                             {0.015, 8, 200000, 0.5, 16, 2048}}};
+
+// Expected of the file (Knobs::error_target), of what interpolates between receivers.
+double interpolation_budget(const Knobs& knobs) {
+    return knobs.error_target > 0 ? 0.7 * knobs.error_target
+                                  : kFineness[static_cast<std::size_t>(knobs.quality)].error;
+}
+
+std::vector<LampSources> wanted_lamps(const formats::Scene& scene, const Knobs& knobs) {
+    std::vector<LampSources> lamps;
+    if (!is_wanted(knobs, kEmitters)) return lamps;
+    for (const Lamp& lamp : list_lamps(scene)) {
+        lamps.push_back(make_lamp_sources(scene, lamp));
+    }
+    return lamps;
+}
 
 }  // namespace
 
@@ -33,8 +50,7 @@ RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers) {
     const RefineChoice& choice = knobs.refine;
     const Fineness& fineness = kFineness[static_cast<std::size_t>(knobs.quality)];
     RefineLimits limits;
-    limits.error = fineness.error;
-    if (knobs.error_target > 0) limits.error = 0.7 * knobs.error_target;
+    limits.error = interpolation_budget(knobs);
     const auto more = static_cast<std::uint64_t>(fineness.more * static_cast<double>(receivers));
     limits.most_added = std::max(more, fineness.least_more);
     if (choice.max_receivers > 0) {
@@ -98,15 +114,34 @@ formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const
     }
     formats::Result<RayScene> rays = RayScene::build(scene, context.threads);
     if (!rays) return std::move(rays).error();
-    std::vector<LampSources> lamps;
-    if (is_wanted(knobs, kEmitters)) {
-        for (const Lamp& lamp : list_lamps(scene)) {
-            lamps.push_back(make_lamp_sources(scene, lamp));
-        }
-    }
+    const std::vector<LampSources> lamps = wanted_lamps(scene, knobs);
     return run_stage(log, "refinement", [&](std::uint64_t& traced) {
         RefinedScene found =
             refine_scene(scene, *rays, lamps, refine_limits(knobs, receivers), context);
+        traced += found.report.rays;
+        return found;
+    });
+}
+
+formats::Result<SimplifiedScene> simplify_for_bake(const formats::Scene& scene, const Knobs& knobs,
+                                                   const Context& context, StageLog& log) {
+    if (!knobs.simplify || scene.primitives.empty()) return SimplifiedScene{};
+    formats::Result<RayScene> rays = RayScene::build(scene, context.threads);
+    if (!rays) return std::move(rays).error();
+    const Fineness& fineness = kFineness[static_cast<std::size_t>(knobs.quality)];
+    SimplifyLimits limits;
+    limits.error = interpolation_budget(knobs) / 3;
+    // A pilot may choose finer cube maps.
+    constexpr std::uint32_t kFinest = 32;
+    const std::uint32_t cells =
+        knobs.error_target > 0 ? std::max(kFinest, knobs.cubemap_size) : knobs.cubemap_size;
+    limits.angle = std::numbers::pi / 2 / cells;
+    limits.cubemap_size = fineness.cubemap_size;
+    limits.points = fineness.simplify_points;
+    limits.seed = knobs.seed;
+    const std::vector<LampSources> lamps = wanted_lamps(scene, knobs);
+    return run_stage(log, "simplification", [&](std::uint64_t& traced) {
+        SimplifiedScene found = simplify_scene(scene, *rays, lamps, limits, context);
         traced += found.report.rays;
         return found;
     });

@@ -8,6 +8,7 @@
 #include "bake/plan/effect.h"
 #include "bake/plan/knobs.h"
 #include "bake/refine/refine_scene.h"
+#include "bake/refine/simplify_scene.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
 
@@ -28,5 +29,10 @@ std::optional<formats::Diagnostic> describe_bound(const RefineReport& report);
 /// Errors: resource.
 formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const Knobs& knobs,
                                               const Context& context, StageLog& log);
+
+/// Which vertices of a refined scene share rows, and which need none (Knobs::simplify). Errors:
+/// resource.
+formats::Result<SimplifiedScene> simplify_for_bake(const formats::Scene& scene, const Knobs& knobs,
+                                                   const Context& context, StageLog& log);
 
 }  // namespace opaline::bake

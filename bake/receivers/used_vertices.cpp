@@ -1,5 +1,6 @@
 #include "bake/receivers/used_vertices.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 
@@ -7,7 +8,10 @@ namespace opaline::bake {
 
 std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene,
                                               const formats::SlotsView& slots) {
-    std::size_t count = slots.vertex.size();
+    std::size_t count = slots.mix.empty() ? slots.vertex.size() : 0;
+    for (const std::uint32_t place : slots.place) {
+        count = std::max<std::size_t>(count, place + std::size_t{1});
+    }
     for (const formats::Primitive& p : scene.primitives) {
         count += slots.empty() ? p.position.size() : 0;
     }
@@ -15,7 +19,9 @@ std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene,
     std::uint32_t first = 0;
     for (const formats::Primitive& p : scene.primitives) {
         for (const std::uint32_t vertex : p.index) {
-            is_used[slots.empty() ? first + vertex : slots.slot[first + vertex]] = true;
+            is_used[slots.empty()        ? first + vertex
+                    : slots.mix.empty() ? slots.slot[first + vertex]
+                                        : slots.place[first + vertex]] = true;
         }
         first += static_cast<std::uint32_t>(p.position.size());
     }
@@ -26,6 +32,14 @@ std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene,
     if (used.empty()) {
         used.resize(count);
         std::iota(used.begin(), used.end(), 0u);
+    }
+    if (slots.mix.empty()) return used;
+    std::vector<std::uint32_t> slot_of(count);
+    for (std::size_t v = 0; v < slots.place.size(); ++v) {
+        slot_of[slots.place[v]] = slots.slot[v];
+    }
+    for (std::uint32_t& of_place : used) {
+        of_place = slot_of[of_place];
     }
     return used;
 }

@@ -254,9 +254,9 @@ bool SceneFacts::is_open() const {
     });
 }
 
-SceneFacts inspect_scene(const Scene& scene, bool shares_rows) {
+SceneFacts inspect_scene(const Scene& scene, formats::Slots slots) {
     SceneFacts facts;
-    if (shares_rows) facts.slots = find_slots(scene);
+    facts.slots = std::move(slots);
     facts.material.resize(scene.materials.size());
     std::vector<std::optional<glm::dvec3>> origin(scene.materials.size());
     for (std::size_t p = 0; p < scene.primitives.size(); ++p) {

@@ -13,7 +13,7 @@ namespace opaline::bake {
 /// inward. Topology is that of parts whose boxes are apart; copies of one mesh are inspected once:
 /// a scene of instances costs a pass over its vertices and triangles.
 ///
-/// `shares_rows`: finds SceneFacts::slots.
-SceneFacts inspect_scene(const formats::Scene& scene, bool shares_rows = false);
+/// `slots`: become SceneFacts::slots.
+SceneFacts inspect_scene(const formats::Scene& scene, formats::Slots slots = {});
 
 }  // namespace opaline::bake

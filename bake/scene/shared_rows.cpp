@@ -44,6 +44,22 @@ formats::Slots find_slots(const formats::Scene& scene) {
     return slots.vertex.size() < slots.slot.size() ? std::move(slots) : formats::Slots{};
 }
 
+formats::Slots places_of(const formats::Scene& scene, formats::Slots slots) {
+    if (slots.mix.empty()) return slots;
+    formats::Slots places;
+    std::uint32_t vertex = 0;
+    for (const formats::Primitive& p : scene.primitives) {
+        places.offset.push_back(static_cast<std::uint32_t>(places.vertex.size()));
+        for (const std::uint32_t end = vertex + static_cast<std::uint32_t>(p.position.size());
+             vertex < end; ++vertex) {
+            if (slots.place[vertex] == places.vertex.size()) places.vertex.push_back(vertex);
+        }
+    }
+    places.offset.push_back(static_cast<std::uint32_t>(places.vertex.size()));
+    places.slot = std::move(slots.place);
+    return places;
+}
+
 std::uint32_t count_receivers_of(const formats::Scene& scene, const formats::SlotsView& slots,
                                  std::size_t primitive) {
     return slots.empty() ? static_cast<std::uint32_t>(scene.primitives[primitive].position.size())

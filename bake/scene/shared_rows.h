@@ -14,6 +14,10 @@ namespace opaline::bake {
 /// -0 and +0 are the same. Empty where no two vertices do.
 formats::Slots find_slots(const formats::Scene& scene);
 
+/// The places and normals of vertices of which some are mixed, as if each were a slot. `slots`
+/// itself where none is.
+formats::Slots places_of(const formats::Scene& scene, formats::Slots slots);
+
 /// Receivers of a primitive: its slots, or its vertices where `slots` is empty.
 std::uint32_t count_receivers_of(const formats::Scene& scene, const formats::SlotsView& slots,
                                  std::size_t primitive);
@@ -23,7 +27,7 @@ std::uint32_t count_receivers_of(const formats::Scene& scene, const formats::Slo
 /// materials and the origin are there. Precondition: `slots` is not empty.
 formats::Scene merge_vertices(const formats::Scene& scene, const formats::SlotsView& slots);
 
-/// What each vertex has of what its slot has.
+/// What each vertex has of what its slot has; a mixed one of that of the largest weight.
 template <class T>
 std::vector<T> spread_to_vertices(const formats::SlotsView& slots, std::vector<T> of_slots) {
     if (slots.empty() || of_slots.empty()) return of_slots;

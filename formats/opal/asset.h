@@ -59,7 +59,8 @@ enum class Shading : std::uint32_t {
 
 /// One glTF primitive of one node instance. Receivers and vertices are the same thing: row
 /// s * terms + k is T_k of a vertex with slot s of the primitive (AssetView::slot_of), which is
-/// v - first_vertex where no vertices share rows. Fixed size, stored as is.
+/// v - first_vertex where no vertices share rows; a mixed vertex (SlotsView::mix) has no row of its
+/// own. Fixed size, stored as is.
 struct PrimitiveRecord {
     std::uint32_t node = 0, mesh = 0, primitive = 0, material = 0;  ///< indices in the source file
     std::uint32_t first_vertex = 0, vertex_count = 0;
@@ -104,7 +105,7 @@ struct AssetView {
     Pairing pairing = Pairing::light_carries_solid_angle;
     std::span<const PrimitiveRecord> primitives;
     SparseRowsView transport;
-    SlotsView slots;                   ///< which vertices share rows; empty: none
+    SlotsView slots;                   ///< which vertices share rows, or mix them; empty: none
     std::span<const Vec3> position;    ///< [m], world
     std::span<const Vec3> normal;      ///< unit
     std::span<const Rgb> base_color;   ///< factor times vertex colour; the image comes on top
@@ -151,7 +152,7 @@ struct Asset {
     std::string provenance;
     std::vector<PrimitiveRecord> primitives;
     SparseRows transport;
-    Slots slots;  ///< empty: no vertices share rows
+    Slots slots;  ///< empty: no vertices share rows, and none are mixed
     std::vector<Vec3> position, normal;
     std::vector<Rgb> base_color;
     std::vector<Float2> texcoord;

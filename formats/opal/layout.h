@@ -39,6 +39,10 @@ inline constexpr std::uint32_t kSlotsMeshVersion = 2, kSlotsSpecularVersion = 2;
 /// version 1, where they stood for themselves, are refused.
 inline constexpr std::uint32_t kTransportVersion = 2;
 
+/// Section version of PRIM beside MIXR: earlier readers would take rows of slots for rows of
+/// places.
+inline constexpr std::uint32_t kMixedVersion = 6;
+
 struct PrimitivesHead {
     std::uint32_t count = 0, record_size = 0;
     std::uint64_t reserved = 0;
@@ -49,6 +53,11 @@ struct SlotsHead {
     std::uint32_t vertices = 0, reserved[3] = {};
 };
 static_assert(sizeof(SlotsHead) == 16);
+
+struct MixesHead {
+    std::uint32_t places = 0, reserved[3] = {};
+};
+static_assert(sizeof(MixesHead) == 16);
 
 struct MeshHead {
     std::uint32_t vertices = 0, indices = 0, texcoords = 0;

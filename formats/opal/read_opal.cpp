@@ -40,6 +40,12 @@ bool read_slots(SectionCursor cursor, AssetView& view) {
     return cursor.take_one(head) && cursor.take(head.vertices, view.slots.slot) && cursor.at_end();
 }
 
+// As they stand in the file, until restore_slots.
+bool read_mixes(SectionCursor cursor, AssetView& view) {
+    MixesHead head;
+    return cursor.take_one(head) && cursor.take(head.places, view.slots.mix) && cursor.at_end();
+}
+
 bool read_mesh(SectionCursor cursor, AssetView& view) {
     MeshHead head;
     if (!cursor.take_one(head)) return false;
@@ -117,10 +123,11 @@ constexpr auto read_part(Part) {
 
 constexpr KnownSection kKnownSections[] = {
     {kBasiSection, read_basis, 1},
-    {kPrimSection, read_primitives, 2, 1, kSlotsVersion},
+    {kPrimSection, read_primitives, 2, 1, kMixedVersion},
     {kTranSection, read_part<take_rows>([](AssetView& v) -> auto& { return v.transport; }), 4,
      kTransportVersion, kTransportVersion},
     {kSharSection, read_slots},
+    {kMixrSection, read_mixes},
     {kMeshSection, read_mesh, 8, 1, kSlotsMeshVersion},
     {kRefiSection, read_added},
     {kImagSection, read_images},
@@ -138,11 +145,18 @@ bool has_section(std::span<const SectionEntry> sections, std::uint32_t id) {
     return std::ranges::find(sections, id, &SectionEntry::id) != sections.end();
 }
 
-// A section that is stored as beside SHAR without it, or the other way round; empty where none is.
+// A section that is stored as beside SHAR, and MIXR, without it, or the other way round; empty
+// where none is.
 std::string find_slots_misfit(std::span<const SectionEntry> sections) {
     const bool has_slots = has_section(sections, kSharSection);
+    const bool has_mixes = has_section(sections, kMixrSection);
+    if (has_mixes && !has_slots) return "section MIXR";
     for (const SectionEntry& entry : sections) {
-        const std::uint32_t own = entry.id == kPrimSection   ? kSlotsVersion
+        if (entry.id == kPrimSection && (entry.version == kMixedVersion) != has_mixes) {
+            return "section PRIM";
+        }
+        const std::uint32_t own = entry.id == kPrimSection
+                                      ? has_mixes ? kMixedVersion : kSlotsVersion
                                   : entry.id == kMeshSection ? kSlotsMeshVersion
                                   : entry.id == kSpecSection ? kSlotsSpecularVersion
                                                              : 0;
@@ -241,7 +255,10 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
     if (found != 15) return damaged("section table", "BASI, PRIM, TRAN and MESH must all be there");
     const std::string misfit = find_slots_misfit(loaded.sections);
     if (!misfit.empty()) {
-        return damaged(misfit, "its version and a section SHAR do not go together");
+        return damaged(misfit, "its version and a section SHAR or MIXR do not go together");
+    }
+    if (has_section(loaded.sections, kMixrSection) && loaded.view.slots.mix.empty()) {
+        return damaged("section MIXR", "it has no places");
     }
     if (has_section(loaded.sections, kSharSection)) {
         DecodedBytes restored(memory, restored_size(loaded.view));

@@ -17,6 +17,7 @@ namespace {
 // Of PRIM: the earliest version that has all of it.
 std::uint32_t version_of(const AssetView& asset) {
     const std::span<const PrimitiveRecord> primitives = asset.primitives;
+    if (!asset.slots.mix.empty()) return kMixedVersion;
     if (!asset.slots.empty()) return kSlotsVersion;
     const auto any = [&](auto has) {
         return std::any_of(primitives.begin(), primitives.end(), has);
@@ -40,6 +41,7 @@ struct SectionHeads {
     PrimitivesHead primitives;
     TransportHead transport;
     SlotsHead slots;
+    MixesHead mixes;
     StoredSlots of_slots;  // empty where no vertices share rows
     MeshHead mesh;
     ImagesHead images;
@@ -65,8 +67,9 @@ SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_
     heads.transport = rows_head(asset.transport);
     if (!asset.slots.empty()) heads.of_slots = store_slots(asset);
     heads.slots.vertices = count(asset.slots.slot);
+    heads.mixes.places = count(std::span(heads.of_slots.mix));
     heads.mesh = {asset.receivers(), count(asset.index), count(asset.texcoord),
-                  count(asset.slots.vertex)};
+                  count(std::span(heads.of_slots.position))};
     heads.images.count = static_cast<std::uint32_t>(asset.images.size());
     for (const PreviewImage& image : asset.images) {
         heads.image_sizes.push_back({image.width, image.height});
@@ -202,6 +205,10 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
     if (shares) {
         add(kSharSection, kSmallLevel,
             Arrays{bytes_of(heads.slots), std::as_bytes(std::span(heads.of_slots.code))});
+    }
+    if (!asset.slots.mix.empty()) {
+        add(kMixrSection, kSmallLevel,
+            Arrays{bytes_of(heads.mixes), std::as_bytes(std::span(heads.of_slots.mix))});
     }
     if (!receiver_errors.empty()) {
         assert(receiver_errors.size() == asset.receivers());

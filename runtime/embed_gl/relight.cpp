@@ -109,7 +109,8 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
     slot_radiance_ = radiance_;
     const formats::SlotsView& slots = asset.slots;
     if (!slots.empty()) {
-        slot_ = names.make_buffer_of(slots.slot);
+        slot_ =
+            slots.mix.empty() ? names.make_buffer_of(slots.slot) : names.make_buffer_of(slots.mix);
         slot_radiance_ = names.make_buffer(slots.vertex.size() * kRadianceBytes, GL_DYNAMIC_COPY);
     }
     if (std::ranges::any_of(primitives_, needs_view)) {
@@ -118,7 +119,7 @@ opaline_status Relight::upload(const formats::AssetView& asset, const RelightOpt
         normal_ = make_buffer_of_slots(asset.normal, slots, names);
     }
     if (!emitters_.block.empty()) values_ = names.make_buffer_of(asset.emitters.value);
-    return make_programs(names);
+    return make_programs(!slots.mix.empty(), names);
 }
 
 opaline_status Relight::make_dot_program(std::uint32_t bands, bool keeps_sign, GlNames& names) {
@@ -133,7 +134,7 @@ opaline_status Relight::make_dot_program(std::uint32_t bands, bool keeps_sign, G
     return program != 0 ? OPALINE_OK : OPALINE_GL_REFUSED;
 }
 
-opaline_status Relight::make_programs(GlNames& names) {
+opaline_status Relight::make_programs(bool is_mixed, GlNames& names) {
     const std::string view_text = std::string(view_terms_text) + view_comp_text;
     for (std::uint32_t p = 0; p < primitives_.size(); ++p) {
         const PrimitiveRecord& primitive = primitives_[p];
@@ -161,8 +162,8 @@ opaline_status Relight::make_programs(GlNames& names) {
         if (emitter_program_ == 0) return OPALINE_GL_REFUSED;
     }
     if (!spread_batches_.empty()) {
-        spread_program_ =
-            names.make_program("shared rows", "", {{GL_COMPUTE_SHADER, spread_comp_text}});
+        spread_program_ = names.make_program("shared rows", is_mixed ? define("MIXED") : "",
+                                             {{GL_COMPUTE_SHADER, spread_comp_text}});
         if (spread_program_ == 0) return OPALINE_GL_REFUSED;
     }
     return OPALINE_OK;

@@ -66,7 +66,7 @@ class Relight {
   private:
     const Sum* sum_of(const formats::PrimitiveRecord& primitive) const;
     opaline_status make_dot_program(std::uint32_t bands, bool keeps_sign, GlNames& names);
-    opaline_status make_programs(GlNames& names);
+    opaline_status make_programs(bool is_mixed, GlNames& names);
     void bind(GLuint binding, GLuint buffer, const BoundRange& range) const;
     void set(GLuint program, std::initializer_list<std::uint32_t> uniforms) const;
     void dispatch_dot(const DotBatch& batch, GLuint light, bool keeps_sign) const;

@@ -110,6 +110,7 @@ std::string make_asset_script(const AssetView& asset) {
     script.put_records("primitives", asset.primitives);
     script.put("slot offset", asset.slots.offset);
     script.put("slots", asset.slots.slot);
+    script.put_records("slot mixes", asset.slots.mix);
     script.put("position", floats_of(asset.position));
     script.put("normal", floats_of(asset.normal));
     script.put("base color", floats_of(asset.base_color));

@@ -29,8 +29,8 @@ bool is_at(const PlacedThing& thing, glm::dvec3 point);
 std::optional<double> index_around(const std::vector<PlacedThing>& things, std::size_t lamp);
 
 /// Limits that are stated (bake/effects/transmission, bake/effects/multiple/walks): light that
-/// crosses a body straight ends where another body begins, and all light in a body at what is no
-/// body.
+/// crosses a body straight ends where a body begins whose light scatters, or the other way round,
+/// and all light in a body at what is no body.
 bool loses_light_inside(const std::vector<PlacedThing>& things);
 
 }  // namespace opaline::tests

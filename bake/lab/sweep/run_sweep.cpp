@@ -212,7 +212,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     base.quality = Quality::preview;
     const auto preview = resolve_knobs(effects, base);
     if (!draft || !preview) return (draft ? preview : draft).error();
-    const ScenePlan planned = plan_scene(effects, scene, *preview);
+    const ScenePlan planned = plan_scene(effects, scene, {}, *preview);
     Sweep sweep{.effects = effects,
                 .scene = scene,
                 .facts = planned.facts,
@@ -282,7 +282,7 @@ formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats
     }
     if (sweep.predict_point(*preview).seconds * sweep.scale() > kShare * options.seconds) {
         result.base = Quality::draft;
-        result.plan = plan_scene(effects, scene, *draft).entries;
+        result.plan = plan_scene(effects, scene, {}, *draft).entries;
     }
     std::vector<SweepPoint> points = make_ladders(sweep.ladder_request(), result.base);
     result.points.front().point = points.front();  // with the rungs of a base, if it is one

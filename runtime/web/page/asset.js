@@ -115,7 +115,7 @@ const Asset = (() => {
       primitives, camera: arrays.get("camera"),
       position: arrays.get("position"), normal: arrays.get("normal"),
       baseColor: arrays.get("base color"), texcoord: arrays.get("texcoord"),
-      slots: arrays.get("slots"), openness: arrays.get("openness"), alpha: arrays.get("alpha"),
+      slots: arrays.get("slots"), mixes: arrays.get("slot mixes"), openness: arrays.get("openness"), alpha: arrays.get("alpha"),
       tangents: arrays.get("tangents"), albedo: arrays.get("albedo"),
       triangles: absoluteTriangles(arrays.get("triangles"), primitives),
       images: Array.from({ length: sizes.length / 2 }, (_, i) => ({

@@ -34,10 +34,11 @@ const Objects = (() => {
     attribute(7, asset.alpha, 1);
     attribute(8, asset.tangents, 3, gl.SHORT, 8, 0);
     if (asset.slots.length > 0) {
+      const isMixed = asset.mixes.length > 0;
       gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
-      gl.bufferData(gl.ARRAY_BUFFER, asset.slots, gl.STATIC_DRAW);
+      gl.bufferData(gl.ARRAY_BUFFER, isMixed ? asset.mixes : asset.slots, gl.STATIC_DRAW);
       gl.enableVertexAttribArray(1);
-      gl.vertexAttribIPointer(1, 1, gl.UNSIGNED_INT, 0, 0);
+      gl.vertexAttribIPointer(1, isMixed ? 4 : 1, gl.UNSIGNED_INT, 0, 0);
     }
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, asset.triangles, gl.STATIC_DRAW);
@@ -97,6 +98,7 @@ const Objects = (() => {
     const surfaces = asset.primitives.map(primitive => {
       const [defines, files] = kindOf(primitive, asset.alpha.length > 0);
       if (asset.slots.length > 0) defines.push(["SHARED_ROWS", ""]);
+      if (asset.mixes.length > 0) defines.push(["MIXED_ROWS", ""]);
       const key = JSON.stringify(defines);
       if (!programs.has(key)) {
         programs.set(key, makeProgram(
