@@ -1,8 +1,10 @@
 // Values that Opaline::gl hands out: those of opaline_shade_from.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
+#include "tests/formats/opal/mix_fixture.h"
 #include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/embed_gl/gl_fixture.h"
 #define GL_GLEXT_PROTOTYPES
@@ -64,6 +66,21 @@ TEST_P(EmbedGlRelight, VerticesThatShareRowsShowWhatTheCpuSays) {
     look_from({2, 1, 7});
     expect_relit(eye);
     opaline_light_set_emitter(host_->light(), 1, tinted);
+    relight();
+    expect_relit(eye);
+    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+}
+
+TEST_P(EmbedGlRelight, VerticesWithoutRowsOfTheirOwnShowWhatTheCpuSays) {
+    const formats::Asset asset = tests::with_mixed_vertices(make_every_kind(8, 8));
+    ASSERT_TRUE(
+        std::ranges::any_of(asset.slots.mix, [](const auto& mix) { return !mix.is_one(); }));
+    make(asset, OPALINE_GL_WITH_TEXTURE);
+    relight();
+    expect_relit();
+    const float eye[3] = {2, 1, 7}, tinted[3] = {3, 1, 0.25f};
+    opaline_light_set_emitter(host_->light(), 1, tinted);
+    look_from({2, 1, 7});
     relight();
     expect_relit(eye);
     EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
