@@ -87,8 +87,9 @@ TEST(SimplifyScene, RowsStayWhereAShadowIsSharp) {
     const Scene scene = ball_over_dense_floor();
     const SimplifiedScene found = simplify(scene, 0.01);
     ASSERT_FALSE(found.slots.mix.empty());
-    EXPECT_LT(found.report.kept, 6000u);
-    // Of vertices of the floor by the ball, and of those inside its borders but far from it.
+    EXPECT_LT(found.report.kept, 7000u);
+    // Of vertices of the floor by the ball, and of those inside its borders but far from
+    // it.
     std::size_t near = 0, kept_near = 0, far = 0, kept_far = 0;
     const formats::Primitive& floor = scene.primitives[0];
     for (std::uint32_t v = 0; v < floor.position.size(); ++v) {
@@ -103,8 +104,8 @@ TEST(SimplifyScene, RowsStayWhereAShadowIsSharp) {
             kept_far += is_kept ? 1 : 0;
         }
     }
-    EXPECT_GT(static_cast<double>(kept_near), 0.5 * static_cast<double>(near));
-    EXPECT_LT(static_cast<double>(kept_far), 0.3 * static_cast<double>(far));
+    EXPECT_GT(static_cast<double>(kept_near), 0.9 * static_cast<double>(near));
+    EXPECT_LT(static_cast<double>(kept_far), 0.6 * static_cast<double>(far));
     const FoundError by_rows = error_of(scene, found.slots);
     EXPECT_LT(by_rows.suns, 0.02);
     EXPECT_LT(by_rows.sky, 0.01);
