@@ -21,7 +21,9 @@ namespace opaline::bake {
 namespace {
 
 constexpr float kAnywhere = std::numeric_limits<float>::infinity();
-constexpr double kWorthwhile = 0.75;  // of the receivers: with more of them, all stay
+// Of the receivers: with more of them, all stay. By normals alone fewer must do: finding where
+// shadows are costs as much as a draft's rows of a third of them.
+constexpr double kWorthwhile = 0.75, kWorthLooking = 1.0 / 3;
 
 formats::Slots every_place(const formats::Scene& scene) {
     formats::Slots places = find_slots(scene);
@@ -387,8 +389,8 @@ SimplifiedScene simplify_scene(const formats::Scene& scene, const RayScene& rays
         parts.begin(), parts.end(), 0.0,
         [](double sum, const Part& part) { return sum + static_cast<double>(part.at.size()); });
     if (given < kFewestOfAll) return all_stay();
-    const auto is_worthwhile = [&] {
-        return static_cast<double>(count_kept(parts)) <= kWorthwhile * given;
+    const auto are_fewer = [&](double share) {
+        return static_cast<double>(count_kept(parts)) <= share * given;
     };
     // Where measuring begins: normals err by their bound at the worst vertices alone. The bound of
     // outlines is hardly ever reached in the mean, but where it is, shadows of suns fade.
@@ -399,13 +401,13 @@ SimplifiedScene simplify_scene(const formats::Scene& scene, const RayScene& rays
         part.spacing.assign(part.at.size(), kFirst * part.size);
     }
     coarsen_all(tolerance, context, parts);
-    if (!is_worthwhile()) return all_stay();
+    if (!are_fewer(kWorthLooking)) return all_stay();
     tell_rounds(context, 0, 1);
     ErrorMeter meter(scene, rays, lamps, limits, parts);
     constexpr int kMostTries = 4;
     for (int attempt = 0; attempt < kMostTries; ++attempt) {
         take_away(job, tolerance, parts);
-        if (context.cancelled() || !is_worthwhile()) break;
+        if (context.cancelled() || !are_fewer(kWorthwhile)) break;
         const double found = meter.measure(job, places, parts);
         if (context.cancelled()) break;
         if (found <= square) {
