@@ -126,6 +126,17 @@ TEST(CancelFlaps, BodiesOfOneMediumThatTouchBecomeOne) {
         << "that of a box of 4 x 2 x 2";
 }
 
+// One of them alone would be open there.
+TEST(CancelFlaps, AFaceThatTwoOverlappingBodiesHaveInCommonStaysOneOfEach) {
+    const Primitive cube = tests::make_cube(2, false);
+    Primitive taller = cube;
+    for (glm::vec3& p : taller.position) {
+        p.y = p.y < 0 ? 2 * p.y : p.y;
+    }
+    EXPECT_EQ(find_flaps(wax_scene({cube, taller}), 0).repeats, 0u);
+    EXPECT_EQ(find_flaps(wax_scene({cube, cube}), 0).repeats, cube.index.size() / 3);
+}
+
 // What consists of such pairs is meant.
 TEST(CancelFlaps, ABodyOfNothingElseStays) {
     EXPECT_EQ(find_flaps(wax_scene({make_flap(0)}), 0).pairs, 0u);
