@@ -19,7 +19,7 @@ std::vector<std::uint32_t> find_used_vertices(const formats::Scene& scene,
     std::uint32_t first = 0;
     for (const formats::Primitive& p : scene.primitives) {
         for (const std::uint32_t vertex : p.index) {
-            is_used[slots.empty()        ? first + vertex
+            is_used[slots.empty()       ? first + vertex
                     : slots.mix.empty() ? slots.slot[first + vertex]
                                         : slots.place[first + vertex]] = true;
         }
