@@ -73,7 +73,8 @@ std::vector<std::uint32_t> find_needless(const BodyShells& body,
             ++end;
         }
         if ((end - begin) % 2 == 0) continue;  // as many stay, or an even number less
-        const bool ends_here = std::ranges::equal_range(all, own[begin].first).size() % 2 != 0;
+        const auto [from, to] = std::equal_range(all.begin(), all.end(), own[begin].first);
+        const bool ends_here = (to - from) % 2 != 0;
         opened[patches.find(own[begin].second)] += ends_here ? -1 : 1;
     }
     std::vector<std::uint32_t> needless;
