@@ -125,7 +125,8 @@ formats::Result<RefinedScene> refine_for_bake(const formats::Scene& scene, const
 
 formats::Result<SimplifiedScene> simplify_for_bake(const formats::Scene& scene, const Knobs& knobs,
                                                    const Context& context, StageLog& log) {
-    if (!knobs.simplify || scene.primitives.empty()) return SimplifiedScene{};
+    if (!knobs.simplify) return SimplifiedScene{};
+    if (!has_dense_meshes(scene)) return SimplifiedScene{find_slots(scene), {}};
     formats::Result<RayScene> rays = RayScene::build(scene, context.threads);
     if (!rays) return std::move(rays).error();
     const Fineness& fineness = kFineness[static_cast<std::size_t>(knobs.quality)];

@@ -39,6 +39,8 @@ formats::Slots every_place(const formats::Scene& scene) {
     return places;
 }
 
+constexpr std::size_t kFewest = 256, kFewestOfAll = 2048;  // of fewer, nothing is saved
+
 bool is_eligible(const formats::Material& material) {
     return !material.medium && !material.sheet && !formats::is_metal(material);
 }
@@ -362,10 +364,19 @@ formats::Slots make_slots(formats::Slots places, std::span<const Part> parts) {
 
 }  // namespace
 
+bool has_dense_meshes(const formats::Scene& scene) {
+    std::size_t vertices = 0;
+    for (const formats::Primitive& p : scene.primitives) {
+        const bool counts =
+            p.position.size() >= kFewest && is_eligible(scene.materials[p.material]);
+        vertices += counts ? p.position.size() : 0;
+    }
+    return vertices >= kFewestOfAll;
+}
+
 SimplifiedScene simplify_scene(const formats::Scene& scene, const RayScene& rays,
                                std::span<const LampSources> lamps, const SimplifyLimits& limits,
                                const Context& context) {
-    constexpr std::uint32_t kFewest = 256, kFewestOfAll = 2048;  // of fewer, nothing is saved
     SimplifiedScene result;
     formats::Slots places = every_place(scene);
     result.report.given = result.report.kept = places.vertex.size();

@@ -34,6 +34,9 @@ struct SimplifiedScene {
     SimplifyReport report;
 };
 
+/// Whether a scene has so many vertices that `simplify_scene` may take any away.
+bool has_dense_meshes(const formats::Scene& scene);
+
 /// Finds vertices of dense smooth meshes that need no rows: what their light is can be interpolated
 /// from others of their primitive (coarse_mesh.h). How far apart these may be is known from
 /// normals, and from how near those are that cast shadows (receiver_spacing.h), which is asked at

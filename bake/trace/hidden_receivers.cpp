@@ -100,6 +100,7 @@ std::vector<std::uint32_t> nearest_visible(const RayScene& rays, const formats::
         }
     }
     std::vector<std::uint32_t> nearest;
+    nearest.reserve(best.size());
     for (const HiddenEdge* edge : best) {
         nearest.push_back(edge == nullptr ? kNobody : edge->visible);
     }
