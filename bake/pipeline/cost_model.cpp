@@ -16,6 +16,7 @@
 #include "bake/pipeline/filtered_textures.h"
 #include "bake/pipeline/predict_memory.h"
 #include "bake/pipeline/volume_costs.h"
+#include "bake/refine/simplify_scene.h"
 #include "bake/scene/shared_rows.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/openness.h"
@@ -47,10 +48,11 @@ void bill_layers(const CostRequest& request, Bill& bill) {
 }
 
 // Seconds: the rules, shells and the hierarchy of rays, a triangle; a vertex's clearance, and
-// whether it is hidden; all test lights, of which the rest is in the user's cache.
+// whether it is hidden; whether it needs a row; all test lights, of which the rest is in the user's
+// cache.
 constexpr double kPlanTriangle = 6.3e-7, kOrientTriangle = 7.6e-7;
 constexpr CostBySize kBuildTriangle{3.2e-7, 3.6e-7}, kPlaceReceiver{5.2e-6, 6.5e-6};
-constexpr double kTestLights = 5e-3;
+constexpr double kSimplifyVertex = 5e-5, kTestLights = 5e-3;
 
 double count_vertices(const formats::Scene& scene) {
     double count = 0;
@@ -87,6 +89,10 @@ void bill_placing(const CostedBake& bake, bool has_lamps, Bill& bill) {
     }
     bill.open("bodies");
     bill.add({body_triangles * kOrientTriangle, 0});
+    if (bake.request.knobs.simplify && has_dense_meshes(scene)) {
+        bill.open("simplification");
+        bill.add({count_vertices(scene) * kSimplifyVertex, 0});
+    }
     bill.open("plan");
     bill.add({facts.triangles * kPlanTriangle, 0});
     if (bake.traces_rays) {
