@@ -167,8 +167,8 @@ TEST(CostModel, MoreReceiversAndTrianglesAreNeverCheaper) {
     expect_dearer(predict(ball_on_floor(2)), predict(ball_on_floor(3)), "finer ball");
     expect_dearer(predict(ball_on_floor(3)), predict(ball_on_floor(4)), "finest ball");
     // Fewer than those from which on receivers share rays (interreflection: sites) or may go
-    // (--simplify). Of the
-    // receivers of the self-check, a fixed number, fewer lie on the ball, whose truth takes long.
+    // (--simplify). Of the receivers of the self-check, a fixed number, fewer lie on the ball,
+    // whose truth takes long.
     Predicted few = predict(ball_on_floor(2, 4)), many = predict(ball_on_floor(2, 44));
     for (Predicted* p : {&few, &many}) {
         std::erase_if(p->cost.stages,
