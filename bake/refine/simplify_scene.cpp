@@ -11,6 +11,7 @@
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/refine/coarse_mesh.h"
+#include "bake/refine/dense_part.h"
 #include "bake/refine/interpolation_error.h"
 #include "bake/refine/proxy_rows.h"
 #include "bake/refine/receiver_spacing.h"
@@ -45,56 +46,6 @@ bool is_eligible(const formats::Material& material) {
     return !material.medium && !material.sheet && !formats::is_metal(material);
 }
 
-// A mesh of which receivers may go; its vertices are places of one primitive.
-struct Part {
-    std::uint32_t primitive = 0, first_place = 0, first_vertex = 0;
-    DenseMesh mesh;
-    std::vector<ProxyPoint> at;  // of each vertex; none: kNone as its triangle
-    float size = 0;              // [m]
-    std::vector<std::vector<SkyOutline>> outlines;
-    std::vector<bool> is_asked;
-    std::vector<float> spacing;
-    std::vector<CoarseMix> mix;
-};
-
-Part make_part(const formats::Scene& scene, const formats::Slots& places, std::uint32_t primitive,
-               std::uint32_t first_vertex) {
-    const formats::Primitive& p = scene.primitives[primitive];
-    const std::uint32_t first = places.offset[primitive],
-                        count = places.offset[primitive + 1] - first;
-    Part part;
-    part.primitive = primitive;
-    part.first_place = first;
-    part.first_vertex = first_vertex;
-    glm::vec3 low(kAnywhere), high(-kAnywhere);
-    for (std::uint32_t i = first; i < first + count; ++i) {
-        const std::uint32_t vertex = places.vertex[i] - first_vertex;
-        part.mesh.position.push_back(p.position[vertex]);
-        part.mesh.normal.push_back(p.normal[vertex]);
-        low = glm::min(low, p.position[vertex]);
-        high = glm::max(high, p.position[vertex]);
-    }
-    part.size = glm::distance(low, high);
-    part.at.resize(count, {primitive, formats::kNone, {}});
-    for (std::uint32_t i = 0; i < p.index.size(); i += 3) {
-        std::array<std::uint32_t, 3> corner{};
-        for (std::uint32_t k = 0; k < 3; ++k) {
-            corner[k] = places.slot[first_vertex + p.index[i + k]] - first;
-            if (part.at[corner[k]].first_index != formats::kNone) continue;
-            // A little inside: on an edge rays may start in a wall.
-            glm::vec3 weight(0.02f);
-            weight[static_cast<glm::length_t>(k)] = 0.96f;
-            part.at[corner[k]] = {primitive, i, weight};
-        }
-        if (corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0]) {
-            part.mesh.triangle.push_back(corner);
-        }
-    }
-    part.outlines.resize(count);
-    part.is_asked.resize(count, false);
-    return part;
-}
-
 struct SimplifyJob {
     const formats::Scene& scene;
     const RayScene& rays;
@@ -108,7 +59,7 @@ struct Tolerance {
     double normals = 0, outlines = 0;
 };
 
-void coarsen_all(const Tolerance& tolerance, const Context& context, std::span<Part> parts) {
+void coarsen_all(const Tolerance& tolerance, const Context& context, std::span<DensePart> parts) {
     for_each_block_in_order(
         parts.size(), 1, context,
         [&](Range range) {
@@ -118,15 +69,11 @@ void coarsen_all(const Tolerance& tolerance, const Context& context, std::span<P
         [&](Range range, std::vector<CoarseMix> mix) { parts[range.begin].mix = std::move(mix); });
 }
 
-bool is_mixed(const Part& part, std::uint32_t v) {
-    return !part.mix.empty() && part.mix[v].vertex[0] != v;
-}
-
 // Looks around at vertices that others are interpolated from; how many there were.
-std::size_t ask_for_outlines(SimplifyJob& job, std::span<Part> parts) {
+std::size_t ask_for_outlines(SimplifyJob& job, std::span<DensePart> parts) {
     const DirectionSet directions = make_texel_directions(8);
-    std::vector<std::pair<Part*, std::uint32_t>> asked;
-    for (Part& part : parts) {
+    std::vector<std::pair<DensePart*, std::uint32_t>> asked;
+    for (DensePart& part : parts) {
         for (std::uint32_t v = 0; v < part.mix.size(); ++v) {
             if (!is_mixed(part, v)) continue;
             for (const std::uint32_t u : part.mix[v].vertex) {
@@ -164,7 +111,7 @@ std::size_t ask_for_outlines(SimplifyJob& job, std::span<Part> parts) {
 }
 
 // Where nobody looked, spacing grows with the distance from where somebody did.
-void set_spacing(const SimplifyJob& job, double square, Part& part) {
+void set_spacing(const SimplifyJob& job, double square, DensePart& part) {
     constexpr float kGrowth = 0.5f, kWidest = 1.0f / 8;  // of the part
     std::vector<float> asked(part.outlines.size(), kAnywhere);
     for (std::uint32_t v = 0; v < asked.size(); ++v) {
@@ -183,22 +130,12 @@ void set_spacing(const SimplifyJob& job, double square, Part& part) {
     }
 }
 
-std::size_t count_kept(std::span<const Part> parts) {
-    std::size_t kept = 0;
-    for (const Part& part : parts) {
-        for (std::uint32_t v = 0; v < part.at.size(); ++v) {
-            kept += is_mixed(part, v) ? 0 : 1;
-        }
-    }
-    return kept;
-}
-
 // What it takes to know whether vertices may go: rows of proxies, of each vertex once.
 class ErrorMeter {
   public:
     ErrorMeter(const formats::Scene& scene, const RayScene& rays,
                std::span<const LampSources> lamps, const SimplifyLimits& limits,
-               std::span<const Part> parts)
+               std::span<const DensePart> parts)
         : tracer_(scene, rays, limits.cubemap_size, lamps),
           rows_(tracer_.no_rows()),
           solid_angle_(formats::texel_solid_angles(limits.cubemap_size)) {
@@ -217,7 +154,8 @@ class ErrorMeter {
     }
 
     /// Relative mean square at mixed vertices, of the kind of light that errs most.
-    double measure(SimplifyJob& job, const formats::Slots& places, std::span<const Part> parts) {
+    double measure(SimplifyJob& job, const formats::Slots& places,
+                   std::span<const DensePart> parts) {
         std::vector<std::pair<std::uint32_t, std::uint32_t>> checked;
         std::vector<ProxyPoint> wanted;
         const auto want = [&](std::uint32_t part, std::uint32_t v) {
@@ -249,7 +187,7 @@ class ErrorMeter {
 
   private:
     static std::uint32_t nearest_vertex(const formats::Scene& scene, const formats::Slots& places,
-                                        const Part& part, const SurfacePoint& at) {
+                                        const DensePart& part, const SurfacePoint& at) {
         const glm::vec3 b = at.barycentric;
         const std::uint32_t k = b.x >= b.y && b.x >= b.z ? 0 : b.y >= b.z ? 1 : 2;
         const std::uint32_t v = scene.primitives[part.primitive].index[at.first_index + k];
@@ -300,66 +238,17 @@ void tell_rounds(const Context& context, std::uint64_t done, std::uint64_t all) 
 
 // Takes away all that the tolerances allow: the first time in rounds, until those that stay, where
 // outlines are known, are close enough to each other.
-void take_away(SimplifyJob& job, const Tolerance& tolerance, std::span<Part> parts) {
+void take_away(SimplifyJob& job, const Tolerance& tolerance, std::span<DensePart> parts) {
     constexpr int kMostLooks = 6;
     constexpr double kFew = 0.01;
     for (int round = 0; round < kMostLooks && !job.context.cancelled(); ++round) {
         const std::size_t asked = ask_for_outlines(job, parts);
-        for (Part& part : parts) {
+        for (DensePart& part : parts) {
             set_spacing(job, tolerance.outlines, part);
         }
         coarsen_all(tolerance, job.context, parts);
         if (static_cast<double>(asked) < kFew * static_cast<double>(count_kept(parts))) return;
     }
-}
-
-// 255ths, the first one below all of them: only a slot's own vertex has it alone.
-formats::SlotMix quantised(const CoarseMix& mix, std::span<const std::uint32_t> slot_of) {
-    formats::SlotMix made;
-    const auto part = [&](std::size_t k) {
-        return static_cast<std::uint8_t>(std::lround(255 * mix.weight[k]));
-    };
-    made.weight[2] = std::min<std::uint8_t>(part(2), 85);
-    made.weight[1] = std::min<std::uint8_t>(std::max<std::uint8_t>(part(1), made.weight[2]),
-                                            static_cast<std::uint8_t>((255 - made.weight[2]) / 2));
-    if (made.weight[1] == 0) made.weight[1] = 1;
-    made.weight[0] = static_cast<std::uint8_t>(255 - made.weight[1] - made.weight[2]);
-    for (std::size_t k = 0; k < mix.vertex.size(); ++k) {
-        made.slot[k] = slot_of[mix.vertex[k]];
-    }
-    return made;
-}
-
-formats::Slots make_slots(formats::Slots places, std::span<const Part> parts) {
-    std::vector<const Part*> part_of(places.offset.size() - 1, nullptr);
-    for (const Part& part : parts) {
-        part_of[part.primitive] = &part;
-    }
-    formats::Slots slots;
-    std::vector<formats::SlotMix> of_place;
-    slots.offset.push_back(0);
-    for (std::size_t p = 0; p < part_of.size(); ++p) {
-        const std::uint32_t first = places.offset[p], count = places.offset[p + 1] - first;
-        std::vector<std::uint32_t> slot_of(count, formats::kNone);
-        for (std::uint32_t i = 0; i < count; ++i) {
-            if (part_of[p] != nullptr && is_mixed(*part_of[p], i)) continue;
-            slot_of[i] = static_cast<std::uint32_t>(slots.vertex.size());
-            slots.vertex.push_back(places.vertex[first + i]);
-        }
-        for (std::uint32_t i = 0; i < count; ++i) {
-            const std::uint32_t own = slot_of[i];
-            of_place.push_back(own != formats::kNone
-                                   ? formats::SlotMix{{own, own, own}, {255, 0, 0, 0}}
-                                   : quantised(part_of[p]->mix[i], slot_of));
-        }
-        slots.offset.push_back(static_cast<std::uint32_t>(slots.vertex.size()));
-    }
-    for (const std::uint32_t place : places.slot) {
-        slots.mix.push_back(of_place[place]);
-        slots.slot.push_back(of_place[place].slot[0]);
-    }
-    slots.place = std::move(places.slot);
-    return slots;
 }
 
 }  // namespace
@@ -384,7 +273,7 @@ SimplifiedScene simplify_scene(const formats::Scene& scene, const RayScene& rays
         result.slots = find_slots(scene);
         return std::move(result);
     };
-    std::vector<Part> parts;
+    std::vector<DensePart> parts;
     std::uint32_t next_vertex = 0;
     for (std::uint32_t p = 0; p < scene.primitives.size(); ++p) {
         const std::uint32_t first_vertex = next_vertex;
@@ -393,12 +282,13 @@ SimplifiedScene simplify_scene(const formats::Scene& scene, const RayScene& rays
             !is_eligible(scene.materials[scene.primitives[p].material])) {
             continue;
         }
-        parts.push_back(make_part(scene, places, p, first_vertex));
+        parts.push_back(make_dense_part(scene, places, p, first_vertex));
     }
     SimplifyJob job{scene, rays, limits, context, 0};
-    const double given = std::accumulate(
-        parts.begin(), parts.end(), 0.0,
-        [](double sum, const Part& part) { return sum + static_cast<double>(part.at.size()); });
+    const double given =
+        std::accumulate(parts.begin(), parts.end(), 0.0, [](double sum, const DensePart& part) {
+            return sum + static_cast<double>(part.at.size());
+        });
     if (given < kFewestOfAll) return all_stay();
     const auto are_fewer = [&](double share) {
         return static_cast<double>(count_kept(parts)) <= share * given;
@@ -408,7 +298,7 @@ SimplifiedScene simplify_scene(const formats::Scene& scene, const RayScene& rays
     const double square = limits.error * limits.error;
     Tolerance tolerance{2 * square, square};
     constexpr float kFirst = 1.0f / 16;
-    for (Part& part : parts) {
+    for (DensePart& part : parts) {
         part.spacing.assign(part.at.size(), kFirst * part.size);
     }
     coarsen_all(tolerance, context, parts);
