@@ -247,6 +247,13 @@ struct EmitterGroup {
     std::vector<std::string> members;  ///< names of emitters, none in two groups or twice
 };
 
+/// That a primitive repeats another one elsewhere: its arrays are empty, and stand for those of the
+/// original with `offset` added to its positions.
+struct CopyOf {
+    std::uint32_t primitive = kNone;  ///< the original, which is no copy; kNone: it is none itself
+    glm::vec3 offset{0};              ///< [m]
+};
+
 /// One glTF primitive of one node instance, in the scene's frame (Scene::origin) and metres.
 /// Vertices keep the original order: receivers and output rows use this numbering. Where NORMAL is
 /// missing and the faces of a vertex differ in their normals, copies of it follow on the last one;
@@ -269,6 +276,9 @@ struct Primitive {
                                        ///< counter-clockwise seen from outside
     std::vector<AddedVertex> added;    ///< of the last vertices, so many (bake/refine); those
                                        ///< before them are the file's
+    CopyOf copy = {};
+
+    bool is_copy() const { return copy.primitive != kNone; }
 };
 
 /// Sum of the areas of its triangles [m^2].

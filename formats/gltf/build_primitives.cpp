@@ -8,6 +8,7 @@
 
 #include "formats/gltf/choose_origin.h"
 #include "formats/gltf/complete_normals.h"
+#include "formats/gltf/find_originals.h"
 #include "formats/gltf/placement.h"
 #include "formats/gltf/read_primitive.h"
 #include "formats/gltf/tangents.h"
@@ -220,6 +221,32 @@ class LastMesh {
     PrimitiveData reported_;
 };
 
+// An instance that `original`, built before, only has to be moved for, from its `first` primitive
+// on. False: it would stand too far away.
+bool copy_primitives(const MeshInstance& instance, const MeshInstance& original, std::size_t first,
+                     std::size_t count, double metres_per_unit, const std::string& name,
+                     Scene& scene) {
+    const glm::vec3 offset(metres_per_unit * glm::dvec3(instance.world[3] - original.world[3]));
+    for (std::size_t p = first; p < first + count; ++p) {
+        for (const glm::vec3& at : scene.primitives[p].position) {
+            if (!is_near(at + offset)) return false;
+        }
+    }
+    for (std::size_t p = first; p < first + count; ++p) {
+        Primitive copy;
+        copy.node = instance.node;
+        copy.mesh = scene.primitives[p].mesh;
+        copy.primitive = scene.primitives[p].primitive;
+        copy.name = name + std::to_string(copy.primitive);
+        copy.material = scene.primitives[p].material;
+        if (!scene.primitives[p].index.empty()) {
+            copy.copy = {static_cast<std::uint32_t>(p), offset};
+        }
+        scene.primitives.push_back(std::move(copy));
+    }
+    return true;
+}
+
 }  // namespace
 
 bool has_area(const Primitive& primitive) {
@@ -236,22 +263,32 @@ void build_primitives(const Document& document, const std::vector<MeshInstance>&
     scene.origin = choose_origin(document, instances, buffers, metres_per_unit);
     ComputedNormals computed;
     LastMesh meshes(document, buffers);
-    for (const MeshInstance& instance : instances) {
+    const std::vector<std::size_t> original =
+        options.keep_copies ? find_originals(document, instances) : std::vector<std::size_t>();
+    std::vector<std::size_t> first_of(instances.size());  // primitive of each instance
+    for (std::size_t i = 0; i < instances.size(); ++i) {
+        const MeshInstance& instance = instances[i];
         const Node& node = document.nodes[instance.node];
         const std::uint32_t mesh_index = node.mesh;
         const Mesh& mesh = document.meshes[mesh_index];
         meshes.begin(mesh_index);
-        const std::size_t first = scene.primitives.size();
+        const std::size_t first = first_of[i] = scene.primitives.size();
+        const std::string name =
+            label("node", instance.node, node.name) +
+            (instance.copy == kNone ? "" : " > instance " + std::to_string(instance.copy)) +
+            " > mesh " + std::to_string(mesh_index) + " > primitive ";
+        if (!original.empty() && original[i] != i && !report.failed() &&
+            copy_primitives(instance, instances[original[i]], first_of[original[i]],
+                            mesh.primitives.size(), metres_per_unit, name, scene)) {
+            continue;
+        }
         for (std::uint32_t p = 0; p < mesh.primitives.size(); ++p) {
             const MeshPrimitive& source = mesh.primitives[p];
             Primitive& out = scene.primitives.emplace_back();
             out.node = instance.node;
             out.mesh = mesh_index;
             out.primitive = p;
-            out.name =
-                label("node", instance.node, node.name) +
-                (instance.copy == kNone ? "" : " > instance " + std::to_string(instance.copy)) +
-                " > mesh " + std::to_string(mesh_index) + " > primitive " + std::to_string(p);
+            out.name = name + std::to_string(p);
             out.material = source.material == kNone
                                ? static_cast<std::uint32_t>(scene.materials.size() - 1)
                                : source.material;

@@ -13,6 +13,7 @@ namespace opaline::formats::gltf {
 struct PrimitiveOptions {
     double metres_per_unit = 1.0;
     double smooth_angle = 0.0;  ///< [degrees], as ImportOptions'
+    bool keep_copies = false;   ///< as ImportOptions'
 };
 
 /// Fills `scene.primitives` in running-number order and `scene.origin`. Needs

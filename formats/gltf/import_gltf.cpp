@@ -13,6 +13,7 @@
 #include "formats/gltf/container.h"
 #include "formats/gltf/decode_draco.h"
 #include "formats/gltf/decode_meshopt.h"
+#include "formats/gltf/find_originals.h"
 #include "formats/gltf/parse_document.h"
 #include "formats/gltf/report.h"
 #include "formats/gltf/resources.h"
@@ -64,7 +65,10 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     const SceneNodes nodes = walk_scene(*document, resources.buffers, report);
     if (report.failed()) return scene;
     if (options.check_size) {
-        if (Status status = options.check_size(count_world(*document, nodes.meshes)); !status) {
+        if (Status status = options.check_size(
+                count_world(*document, options.keep_copies ? originals_of(*document, nodes.meshes)
+                                                           : nodes.meshes));
+            !status) {
             report.errors = std::move(status).error().diagnostics;
             report.kind = ErrorKind::resource;
             return scene;
@@ -72,7 +76,8 @@ Scene import(const std::filesystem::path& path, const ImportOptions& options, st
     }
     build_materials(*document, nodes.meshes, options.metres_per_unit, resources, scene, report);
     build_primitives(*document, nodes.meshes, resources.buffers,
-                     {options.metres_per_unit, options.smooth_angle}, scene, report);
+                     {options.metres_per_unit, options.smooth_angle, options.keep_copies}, scene,
+                     report);
     build_lights(*document, nodes.lights, options.metres_per_unit, scene, report);
     const auto is_empty = [](const Primitive& primitive) { return primitive.index.empty(); };
     if (report.failed()) return scene;

@@ -20,6 +20,9 @@ struct ImportOptions {
     std::function<Status(const SceneCounts&)> check_size = {};
     /// Of primitives without NORMAL: edges of less than this angle are smooth [degrees, 0 to 180].
     double smooth_angle = 0.0;
+    /// Meshes that nodes or instances only move are copies of the first (Primitive::copy): far less
+    /// memory, for those who know what a copy is. `check_size` then hears of originals alone.
+    bool keep_copies = false;
 };
 
 /// A scene and everything worth telling the user about it.

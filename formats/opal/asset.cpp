@@ -10,6 +10,7 @@ AssetView Asset::view() const {
     view.cubemap_size = transport.cubemap_size;
     view.primitives = primitives;
     view.transport = transport.view();
+    view.copies = copies;
     view.slots = slots.view();
     view.position = position;
     view.normal = normal;

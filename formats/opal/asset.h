@@ -10,6 +10,7 @@
 
 #include "formats/opal/added_vertices.h"
 #include "formats/opal/clouds.h"
+#include "formats/opal/copies.h"
 #include "formats/opal/emitters.h"
 #include "formats/opal/gloss_model.h"
 #include "formats/opal/holes.h"
@@ -105,6 +106,9 @@ struct AssetView {
     Pairing pairing = Pairing::light_carries_solid_angle;
     std::span<const PrimitiveRecord> primitives;
     SparseRowsView transport;
+    /// Primitives that have the rows of others; ascending. As a file is read these have vertices of
+    /// their own as well; of an `Asset` and in its file they have none.
+    std::span<const CopyRecord> copies;
     SlotsView slots;                   ///< which vertices share rows, or mix them; empty: none
     std::span<const Vec3> position;    ///< [m], world
     std::span<const Vec3> normal;      ///< unit
@@ -152,7 +156,8 @@ struct Asset {
     std::string provenance;
     std::vector<PrimitiveRecord> primitives;
     SparseRows transport;
-    Slots slots;  ///< empty: no vertices share rows, and none are mixed
+    std::vector<CopyRecord> copies;  ///< of primitives without vertices
+    Slots slots;                     ///< empty: no vertices share rows, and none are mixed
     std::vector<Vec3> position, normal;
     std::vector<Rgb> base_color;
     std::vector<Float2> texcoord;

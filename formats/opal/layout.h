@@ -43,6 +43,9 @@ inline constexpr std::uint32_t kTransportVersion = 2;
 /// places.
 inline constexpr std::uint32_t kMixedVersion = 6;
 
+/// Section version of PRIM beside COPY: earlier readers would find no vertices in copies.
+inline constexpr std::uint32_t kCopiesVersion = 7;
+
 struct PrimitivesHead {
     std::uint32_t count = 0, record_size = 0;
     std::uint64_t reserved = 0;
@@ -58,6 +61,11 @@ struct MixesHead {
     std::uint32_t places = 0, reserved[3] = {};
 };
 static_assert(sizeof(MixesHead) == 16);
+
+struct CopiesHead {
+    std::uint32_t count = 0, record_size = 0, reserved[2] = {};
+};
+static_assert(sizeof(CopiesHead) == 16);
 
 struct MeshHead {
     std::uint32_t vertices = 0, indices = 0, texcoords = 0;

@@ -46,6 +46,13 @@ bool read_mixes(SectionCursor cursor, AssetView& view) {
     return cursor.take_one(head) && cursor.take(head.places, view.slots.mix) && cursor.at_end();
 }
 
+// Primitives without vertices, until restore_copies.
+bool read_copies(SectionCursor cursor, AssetView& view) {
+    CopiesHead head;
+    return cursor.take_one(head) && head.record_size == sizeof(CopyRecord) &&
+           cursor.take(head.count, view.copies) && cursor.at_end();
+}
+
 bool read_mesh(SectionCursor cursor, AssetView& view) {
     MeshHead head;
     if (!cursor.take_one(head)) return false;
@@ -123,11 +130,12 @@ constexpr auto read_part(Part) {
 
 constexpr KnownSection kKnownSections[] = {
     {kBasiSection, read_basis, 1},
-    {kPrimSection, read_primitives, 2, 1, kMixedVersion},
+    {kPrimSection, read_primitives, 2, 1, kCopiesVersion},
     {kTranSection, read_part<take_rows>([](AssetView& v) -> auto& { return v.transport; }), 4,
      kTransportVersion, kTransportVersion},
     {kSharSection, read_slots},
     {kMixrSection, read_mixes},
+    {kCopySection, read_copies},
     {kMeshSection, read_mesh, 8, 1, kSlotsMeshVersion},
     {kRefiSection, read_added},
     {kImagSection, read_images},
@@ -145,19 +153,24 @@ bool has_section(std::span<const SectionEntry> sections, std::uint32_t id) {
     return std::ranges::find(sections, id, &SectionEntry::id) != sections.end();
 }
 
-// A section that is stored as beside SHAR, and MIXR, without it, or the other way round; empty
+// A section that is stored as beside SHAR, MIXR or COPY without it, or the other way round; empty
 // where none is.
 std::string find_slots_misfit(std::span<const SectionEntry> sections) {
     const bool has_slots = has_section(sections, kSharSection);
     const bool has_mixes = has_section(sections, kMixrSection);
+    const bool has_copies = has_section(sections, kCopySection);
     if (has_mixes && !has_slots) return "section MIXR";
     for (const SectionEntry& entry : sections) {
-        if (entry.id == kPrimSection && (entry.version == kMixedVersion) != has_mixes) {
-            return "section PRIM";
+        if (entry.id == kPrimSection) {
+            const std::uint32_t version = has_copies  ? kCopiesVersion
+                                          : has_mixes ? kMixedVersion
+                                          : has_slots ? kSlotsVersion
+                                                      : 0;
+            const bool is_right =
+                version != 0 ? entry.version == version : entry.version < kSlotsVersion;
+            if (!is_right) return "section PRIM";
         }
-        const std::uint32_t own = entry.id == kPrimSection
-                                      ? has_mixes ? kMixedVersion : kSlotsVersion
-                                  : entry.id == kMeshSection ? kSlotsMeshVersion
+        const std::uint32_t own = entry.id == kMeshSection   ? kSlotsMeshVersion
                                   : entry.id == kSpecSection ? kSlotsSpecularVersion
                                                              : 0;
         if (own != 0 && (entry.version == own) != has_slots) {
@@ -255,7 +268,7 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
     if (found != 15) return damaged("section table", "BASI, PRIM, TRAN and MESH must all be there");
     const std::string misfit = find_slots_misfit(loaded.sections);
     if (!misfit.empty()) {
-        return damaged(misfit, "its version and a section SHAR or MIXR do not go together");
+        return damaged(misfit, "its version and a section SHAR, MIXR or COPY do not go together");
     }
     if (has_section(loaded.sections, kMixrSection) && loaded.view.slots.mix.empty()) {
         return damaged("section MIXR", "it has no places");
@@ -268,6 +281,16 @@ Result<LoadedAsset> read_opal(std::span<const std::byte> bytes, const std::strin
             !is_sound(fault)) {
             return damaged(fault.where, fault.what);
         }
+        loaded.decoded.push_back(std::move(restored));
+    }
+    if (!loaded.view.copies.empty()) {
+        if (const Fault fault = find_copies_fault(loaded.view, bytes.size()); !is_sound(fault)) {
+            return damaged(fault.where, fault.what);
+        }
+        const std::size_t size = size_with_copies(loaded.view);
+        DecodedBytes restored(memory, size);
+        if (restored.empty()) return no_memory("section COPY", size);
+        restore_copies(loaded.view, {restored.data(), size});
         loaded.decoded.push_back(std::move(restored));
     }
     loaded.view.transport.cubemap_size = loaded.view.cubemap_size;

@@ -71,7 +71,7 @@ Result<std::vector<float>> read_receiver_errors(std::span<const std::byte> bytes
         static_cast<std::size_t>(entry->offset), static_cast<std::size_t>(entry->stored_size));
     if (checksum(stored) != entry->checksum) return damaged("its checksum does not match");
     // The receivers stand in the file, 40 bytes each: their number bounds what is allocated.
-    const std::uint32_t receivers = loaded.view.receivers();
+    const std::uint32_t receivers = count_stored_vertices(loaded.view);
     if (entry->size != section_size(receivers)) {
         return damaged("it does not have a number for each receiver");
     }
@@ -84,7 +84,7 @@ Result<std::vector<float>> read_receiver_errors(std::span<const std::byte> bytes
         return damaged("its counts do not agree with its size");
     }
     if (const char* const fault = find_error_fault(head, receivers, errors)) return damaged(fault);
-    return std::vector<float>(errors.begin(), errors.end());
+    return spread_to_copies(loaded.view, errors);
 }
 
 ErrorSummary summarize_errors(std::span<const float> errors) {

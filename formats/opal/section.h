@@ -42,6 +42,7 @@ inline constexpr std::uint32_t kNormSection = section_id("NORM");
 inline constexpr std::uint32_t kTranSection = section_id("TRAN");
 inline constexpr std::uint32_t kSharSection = section_id("SHAR");
 inline constexpr std::uint32_t kMixrSection = section_id("MIXR");
+inline constexpr std::uint32_t kCopySection = section_id("COPY");
 inline constexpr std::uint32_t kVoluSection = section_id("VOLU");
 inline constexpr std::uint32_t kClouSection = section_id("CLOU");
 inline constexpr std::uint32_t kEmitSection = section_id("EMIT");

@@ -1,24 +1,9 @@
 #include "formats/opal/slots_file.h"
 
+#include "formats/opal/array_cutter.h"
+
 namespace opaline::formats {
 namespace {
-
-// Hands out arrays of `bytes` one after the other.
-class ArrayCutter {
-  public:
-    explicit ArrayCutter(std::span<std::byte> bytes) : rest_(bytes) {}
-
-    template <class T>
-    std::span<T> take(std::size_t count) {
-        static_assert(alignof(T) <= 4 && sizeof(T) % 4 == 0);
-        const std::span<T> array(reinterpret_cast<T*>(rest_.data()), count);
-        rest_ = rest_.subspan(count * sizeof(T));
-        return array;
-    }
-
-  private:
-    std::span<std::byte> rest_;
-};
 
 struct SlotArrays {
     std::span<std::uint32_t> offset, slot, vertex;

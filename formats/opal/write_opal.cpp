@@ -17,6 +17,7 @@ namespace {
 // Of PRIM: the earliest version that has all of it.
 std::uint32_t version_of(const AssetView& asset) {
     const std::span<const PrimitiveRecord> primitives = asset.primitives;
+    if (!asset.copies.empty()) return kCopiesVersion;
     if (!asset.slots.mix.empty()) return kMixedVersion;
     if (!asset.slots.empty()) return kSlotsVersion;
     const auto any = [&](auto has) {
@@ -42,6 +43,7 @@ struct SectionHeads {
     TransportHead transport;
     SlotsHead slots;
     MixesHead mixes;
+    CopiesHead copies;
     StoredSlots of_slots;  // empty where no vertices share rows
     MeshHead mesh;
     ImagesHead images;
@@ -60,6 +62,9 @@ struct SectionHeads {
 };
 
 SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_errors) {
+    assert(std::ranges::all_of(asset.copies, [&](const CopyRecord& copy) {
+        return asset.primitives[copy.primitive].vertex_count == 0;
+    }));
     const auto count = [](auto span) { return static_cast<std::uint32_t>(span.size()); };
     SectionHeads heads;
     heads.basis = {1, asset.cubemap_size, static_cast<std::uint32_t>(asset.pairing), 0};
@@ -68,6 +73,7 @@ SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_
     if (!asset.slots.empty()) heads.of_slots = store_slots(asset);
     heads.slots.vertices = count(asset.slots.slot);
     heads.mixes.places = count(std::span(heads.of_slots.mix));
+    heads.copies = {count(asset.copies), sizeof(CopyRecord), {}};
     heads.mesh = {asset.receivers(), count(asset.index), count(asset.texcoord),
                   count(std::span(heads.of_slots.position))};
     heads.images.count = static_cast<std::uint32_t>(asset.images.size());
@@ -209,6 +215,9 @@ std::vector<StoredSection> store_sections(const AssetView& asset,
     if (!asset.slots.mix.empty()) {
         add(kMixrSection, kSmallLevel,
             Arrays{bytes_of(heads.mixes), std::as_bytes(std::span(heads.of_slots.mix))});
+    }
+    if (!asset.copies.empty()) {
+        add(kCopySection, kSmallLevel, Arrays{bytes_of(heads.copies), std::as_bytes(asset.copies)});
     }
     if (!receiver_errors.empty()) {
         assert(receiver_errors.size() == asset.receivers());

@@ -329,6 +329,41 @@ TEST(GltfHierarchy, EveryInstanceOfAMeshIsPlaced) {
                 {at, {{"TRANSLATION", -1}}, "is not an accessor"}});
 }
 
+TEST(GltfHierarchy, MeshesThatAreOnlyMovedAreCopiesWhereTheyAreWanted) {
+    AssetBuilder asset = triangle_asset();
+    asset.add_node(0);
+    asset.add_node(0);
+    asset.add_node(0);
+    asset.json["nodes"][1]["translation"] = {2, 0, -1};
+    asset.json["nodes"][2]["scale"] = {2, 1, 1};
+    asset.json["nodes"][3]["scale"] = {2, 1, 1};
+    asset.json["nodes"][3]["translation"] = {0, 5, 0};
+    const auto whole = must_import(asset).scene;
+    const auto scene = must_import(asset, {.metres_per_unit = 0.5, .keep_copies = true}).scene;
+    ASSERT_EQ(scene.primitives.size(), 4u);
+    for (const std::size_t p : {1u, 3u}) {
+        const formats::Primitive& copy = scene.primitives[p];
+        ASSERT_TRUE(copy.is_copy());
+        EXPECT_TRUE(copy.position.empty());
+        EXPECT_EQ(copy.copy.primitive, p - 1);
+        EXPECT_EQ(copy.name, whole.primitives[p].name);
+        EXPECT_EQ(copy.node, p);
+        for (std::size_t v = 0; v < 3; ++v) {
+            EXPECT_EQ(scene.primitives[p - 1].position[v] + copy.copy.offset,
+                      0.5f * whole.primitives[p].position[v]);
+        }
+        EXPECT_FALSE(scene.primitives[p - 1].is_copy());
+        EXPECT_FALSE(whole.primitives[p].is_copy());
+    }
+    std::uint64_t counted = 0;
+    const auto count = [&](const formats::SceneCounts& counts) {
+        counted = counts.vertices;
+        return formats::ok_status();
+    };
+    must_import(asset, {.check_size = count, .keep_copies = true});
+    EXPECT_EQ(counted, 6u);
+}
+
 TEST(GltfHierarchy, TooManyInstancesAreRefusedBeforeTheyAreMade) {
     AssetBuilder asset = triangle_asset();
     asset.json["accessors"].push_back(
