@@ -302,6 +302,8 @@ ErrorReport check_file(const FinishedBake& bake, const formats::AssetView& asset
     std::vector<CheckPoint> between =
         draw_surface_probes(bake.inputs.scene, bake.inputs.rays, find_lit_primitives(bake),
                             {drawn.size(), seed, static_cast<std::uint32_t>(all)}, context);
+    move_to_copies(bake.inputs.scene, seed, receivers);
+    move_to_copies(bake.inputs.scene, seed, between);
     turn_thin_walled(bake.inputs.scene, receivers);
     turn_thin_walled(bake.inputs.scene, between);
     std::vector<glm::vec3> normals;

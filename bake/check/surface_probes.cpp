@@ -11,6 +11,7 @@
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/copies.h"
 #include "bake/trace/hidden_receivers.h"
 
 namespace opaline::bake {
@@ -105,6 +106,21 @@ void turn_thin_walled(const formats::Scene& scene, std::span<CheckPoint> points)
     for (CheckPoint& point : points) {
         point.behind =
             scene.materials[point.material].sheet.has_value() && std::popcount(point.key) % 2 == 1;
+    }
+}
+
+void move_to_copies(const formats::Scene& scene, std::uint64_t seed, std::span<CheckPoint> points) {
+    constexpr std::uint32_t kOfCopies = 0xfffffffeu;  // no sample of the truth has that number
+    const std::vector<std::vector<std::uint32_t>> copies = copies_of_primitives(scene);
+    for (CheckPoint& point : points) {
+        const std::vector<std::uint32_t>& own = copies[point.primitive];
+        const float u = random_uniform(seed, RandomStage::check_points, point.key, kOfCopies)[0];
+        const auto chosen = static_cast<std::size_t>(u * static_cast<float>(own.size() + 1));
+        if (chosen >= own.size()) continue;
+        const glm::vec3 offset = scene.primitives[own[chosen]].copy.offset;
+        point.receiver = moved(point.receiver, offset);
+        point.body.position += offset;
+        point.body.inner += offset;
     }
 }
 

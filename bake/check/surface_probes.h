@@ -40,6 +40,10 @@ std::vector<CheckPoint> make_check_points(std::span<const ReceiverSet> sets,
 /// Sets `behind` of about half of the points of thin-walled surfaces, by their keys.
 void turn_thin_walled(const formats::Scene& scene, std::span<CheckPoint> points);
 
+/// Moves points of meshes that copies repeat to one of these or leaves them, each alike, by seed
+/// and key: there the file shows the same rows, and the truth may be another one.
+void move_to_copies(const formats::Scene& scene, std::uint64_t seed, std::span<CheckPoint> points);
+
 /// Turns the views of three in four points away from the normal, cosine-distributed but for the
 /// last 25 degrees above the surface, by seed and key; the others stay. Two points of one key look
 /// alike. `normals`: of the asset's vertices; views of which one does not see all of a point's

@@ -45,7 +45,8 @@ void print_summary(const BakeCommand& options, const bake::BakeResult& result, s
                    std::size_t warnings) {
     const std::size_t nodes = result.asset.volumes.node.size();
     std::string line = fmt::format(
-        "{}: {} receivers{}, {}{}, {}", printable(options.output), result.asset.position.size(),
+        "{}: {} receivers{}, {}{}, {}", printable(options.output),
+        formats::count_restored_vertices(result.asset.view()),
         result.refinement.added > 0 ? fmt::format(" ({} added)", result.refinement.added) : "",
         nodes > 0 ? fmt::format("{} nodes in volumes, ", nodes) : "",
         format_seconds(result.seconds_total), format_bytes(static_cast<double>(bytes)));

@@ -109,6 +109,7 @@ Json describe(const OpenedAsset& asset, std::span<const float> receiver_errors) 
     info["receivers"] = view.receivers();
     info["slots"] = view.slots.empty() ? view.receivers() : view.slots.vertex.size();
     info["mixed"] = count_mixed(view.slots);
+    info["copies"] = view.copies.size();
     info["rows"] = view.transport.rows();
     info["coefficients"] = view.transport.row_offset.back();
     info["code_bits"] = view.transport.code_bits;
@@ -313,6 +314,10 @@ int run(const InfoCommand& options) {
         fmt::print("              {} vertices share the rows of {}{}\n", view.receivers(),
                    view.slots.vertex.size(),
                    mixed > 0 ? fmt::format(", {} of them interpolated", mixed) : "");
+    }
+    if (!view.copies.empty()) {
+        fmt::print("              {} primitives are copies: they have the rows of others\n",
+                   view.copies.size());
     }
     print_receiver_errors(info["receiver_errors"]);
     print_provenance(info["provenance"]);

@@ -150,7 +150,8 @@ std::string make_report(const formats::Scene& scene, const bake::BakeResult& res
                                     {"error", result.simplification.error}};
     }
     report["output"] = {{"bytes", bytes},
-                        {"receivers", result.asset.position.size()},
+                        {"receivers", formats::count_restored_vertices(result.asset.view())},
+                        {"copies", result.asset.copies.size()},
                         {"slots", slots_of(result.asset)},
                         {"rows", result.asset.transport.view().rows()},
                         {"terms", most_terms(result.asset)},

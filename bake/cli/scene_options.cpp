@@ -16,6 +16,7 @@
 #include "bake/effects/volumes/plan_volumes.h"
 #include "bake/pipeline/predict_memory.h"
 #include "bake/pipeline/refine_stage.h"
+#include "bake/scene/copies.h"
 #include "bake/scene/shared_rows.h"
 #include "formats/opal/terms.h"
 
@@ -98,6 +99,21 @@ void announce_size(const std::string& scene, const formats::SceneCounts& counts)
     if (kSeconds * vertices < 1) return;
     print_note(fmt::format("{}: {:.1f} million vertices: to inspect them takes some {}",
                            printable(scene), 1e-6 * vertices, format_seconds(kSeconds * vertices)));
+}
+
+// `check`: whether a scene of such a size fits into memory.
+template <class Check>
+void share_copies(const SceneOptions& options, const bake::Knobs& knobs,
+                  const bake::Context& context, const Check& check, formats::Scene& scene) {
+    const bake::ShareReport copies = require(bake::share_copies_for_bake(knobs, context, scene));
+    if (copies.given == 0) return;
+    require(check(bake::count_memory(bake::count_with(scene, copies.apart))));
+    bake::expand_copies(copies.apart, scene);
+    if (copies.shared == 0) return;
+    print_note(
+        fmt::format("{}: {} of {} repeated meshes share the rows of others, and err by some "
+                    "{:.1f} % for it",
+                    printable(options.scene), copies.shared, copies.given, 100 * copies.error));
 }
 
 // Of an effect's knob.
@@ -235,8 +251,10 @@ formats::ImportedScene open_scene(const SceneOptions& options, const bake::Knobs
     };
     formats::ImportOptions wanted = options.import;
     wanted.check_size = check_size;
+    wanted.keep_copies = true;
     auto imported = open_scene(options.scene, wanted, options.media, detail);
     require(bake::check_bakeable(imported.scene));
+    share_copies(options, knobs, context, check, imported.scene);
     const formats::Slots slots =
         knobs.simplify ? bake::find_slots(imported.scene) : formats::Slots{};
     require(check(bake::count_memory(bake::all_effects(), imported.scene, slots.view(), knobs)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "bake/scene/copies.h"
 #include "bake/scene/lobe_record.h"
 #include "bake/scene/marble.h"
 #include "bake/scene/shared_rows.h"
@@ -103,7 +104,7 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
         const bool has_image = material.base_color_image != kNone ||
                                material.gloss.image != kNone || material.emission_image != kNone ||
                                material.normal_image != kNone;
-        const bool mapped = has_image && !p.texcoord.empty();
+        const bool mapped = has_image && !original_of(scene, number).texcoord.empty();
         if (mapped && material.base_color_image != kNone) {
             record.base_color_image = material.base_color_image;
             record.wrap_u = material.wrap_u;
@@ -123,6 +124,10 @@ Asset pack_asset(const Scene& scene, std::span<const RowLayout> layouts, SparseR
                                       : GlossRecord{});
         }
         asset.primitives.push_back(record);
+        if (p.is_copy()) {
+            asset.copies.push_back(
+                {static_cast<std::uint32_t>(number), p.copy.primitive, to_vec3(p.copy.offset), 0});
+        }
         append_vertices(asset, scene, p, layout.tint, mapped, textured);
         asset.index.insert(asset.index.end(), p.index.begin(), p.index.end());
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 
+#include "bake/scene/copies.h"
 #include "bake/scene/coverage.h"
 #include "bake/scene/lobe_record.h"
 
@@ -43,8 +44,7 @@ Holes pack_holes(const Scene& scene, std::vector<PreviewImageData>& images) {
     Holes holes;
     std::map<std::uint32_t, std::uint32_t> packed;  // image of the scene to image of the file
     for (std::uint32_t i = 0; i < scene.primitives.size(); ++i) {
-        const Primitive& p = scene.primitives[i];
-        const Material& material = scene.materials[p.material];
+        const Material& material = scene.materials[scene.primitives[i].material];
         if (!has_holes(material)) continue;
         const bool is_whole = material.alpha_mode == Material::AlphaMode::opaque;  // and glass
         HoleRecord hole;
@@ -57,7 +57,8 @@ Holes pack_holes(const Scene& scene, std::vector<PreviewImageData>& images) {
         hole.cutoff = material.alpha_cutoff;
         hole.mode =
             material.alpha_mode == Material::AlphaMode::mask ? HoleMode::mask : HoleMode::blend;
-        if (!is_whole && material.base_color_image != kNone && !p.texcoord.empty()) {
+        if (!is_whole && material.base_color_image != kNone &&
+            !original_of(scene, i).texcoord.empty()) {
             const auto [found, is_new] = packed.try_emplace(
                 material.base_color_image, static_cast<std::uint32_t>(images.size()));
             if (is_new) images.push_back(alpha_of(scene.images[material.base_color_image]));
@@ -68,7 +69,7 @@ Holes pack_holes(const Scene& scene, std::vector<PreviewImageData>& images) {
         holes.record.push_back(hole);
     }
     if (std::ranges::any_of(holes.record, [&](const HoleRecord& hole) {
-            return !scene.primitives[hole.primitive].alpha.empty();
+            return !original_of(scene, hole.primitive).alpha.empty();
         })) {
         append_vertex_alpha(scene, holes.vertex_alpha);
     }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "bake/scene/copies.h"
 #include "bake/scene/lobe_record.h"
 #include "formats/opal/sheet_shares.h"
 
@@ -11,7 +12,7 @@ namespace opaline::bake {
 formats::NormalMaps pack_normal_maps(const formats::Scene& scene) {
     formats::NormalMaps maps;
     for (std::uint32_t i = 0; i < scene.primitives.size(); ++i) {
-        const formats::Primitive& p = scene.primitives[i];
+        const formats::Primitive& p = original_of(scene, i);
         const formats::Material& material = scene.materials[p.material];
         if (material.normal_image == formats::kNone || material.normal_scale == 0 ||
             p.tangent.empty()) {

@@ -91,7 +91,7 @@ FootprintKernel footprint_of(glm::vec3 origin, const BounceEnd& end, const Bounc
     const glm::vec3 across = moved(cell.across), along = moved(cell.along);
     const float area = glm::dot(side.normal, glm::cross(across, along));
     FootprintKernel kernel;
-    kernel.centre = origin + t * toward;
+    kernel.centre = origin + t * toward - end.triangle.offset;
     kernel.area = std::max(std::abs(area), kNoArea);
     const float inverse = std::copysign(1 / kernel.area, area);
     kernel.across = inverse * glm::cross(along, side.normal);
@@ -159,7 +159,7 @@ BounceGather weigh_bounces(const BounceSpace& space, const BounceTree& tree, con
         const float kept = part / share;
         if (!is_by_lobe) share *= share_of_radiosity(space.scene.materials[end.material], kept);
         const std::size_t first = weights.size();
-        const glm::vec3 y = at.origin + end.distance * end.direction;
+        const glm::vec3 y = at.origin + end.distance * end.direction - end.triangle.offset;
         const std::uint32_t node = tree.find(y, wanted, look_up == LookUp::node ? kernel.area : 0);
         if (node != formats::kNone &&
             !(look_up == LookUp::kernel &&

@@ -85,8 +85,8 @@ std::vector<SeenNode> find_seen(const BounceSpace& space, const BounceTree& tree
             const RayEnd end = end_of_ray(space.scene, some[i].origin, some[i].direction, hits, i);
             const auto view = static_cast<std::uint32_t>(begin + i);
             const MirroredRay ray = mirror(space, end, {1, 1, 1}, view);
-            const std::uint32_t node =
-                tree.find(end.position, {end.material, side.behind, side.normal}, area);
+            const std::uint32_t node = tree.find(end.position - end.triangle.offset,
+                                                 {end.material, side.behind, side.normal}, area);
             if (node != formats::kNone) {
                 const float share = share_of_own(space, tree, node, end, ray);
                 seen.push_back({node, view, {share, share, share}});

@@ -197,7 +197,8 @@ std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
                 const RayEnd end = end_of_ray(space.scene, ray.origin, ray.direction, hits, i);
                 if (!end.side.is_seen) continue;
                 const std::uint32_t node =
-                    tree.find(end.position, {end.material, end.side.behind, end.side.normal}, 0);
+                    tree.find(end.position - end.triangle.offset,
+                              {end.material, end.side.behind, end.side.normal}, 0);
                 MirroredRay on = mirror(space, end, ray.share, ray.number);
                 if (mirrors + 1 == kMostMirrors || on.largest() < kFaint) {
                     const std::uint32_t irradiance = on.of_lobe > 0 && node != formats::kNone

@@ -34,9 +34,13 @@ struct BounceSpace {
 struct TrianglePlace {
     std::uint32_t primitive = 0, first_index = 0;  ///< into Primitive::index
     float u = 0, v = 0;                            ///< weights of its second and third corner
+    /// [m], of a copy from its original, whose scatterers say what it sends: they are where the ray
+    /// ends less this.
+    glm::vec3 offset{0};
 };
 inline TrianglePlace triangle_of_hit(const PacketHits& hits, std::size_t lane) {
-    return {hits.primitive[lane], hits.first_index[lane], hits.u[lane], hits.v[lane]};
+    return {hits.primitive[lane], hits.first_index[lane], hits.u[lane], hits.v[lane],
+            hits.offset[lane]};
 }
 
 /// A ray that meets a surface.

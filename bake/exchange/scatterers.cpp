@@ -100,7 +100,8 @@ std::vector<Seen> look_around(const LightInputs& inputs, std::span<const Receive
                             part.seen.push_back(
                                 {{hits.primitive[lane], hits.first_index[lane]},
                                  {1 - u - v, u, v},
-                                 {hit.origin + hits.distance[lane] * hit.direction,
+                                 {hit.origin + hits.distance[lane] * hit.direction -
+                                      hits.offset[lane],
                                   {hits.material[lane], side.behind, side.normal}}});
                         }
                     });

@@ -27,6 +27,7 @@
 #include "bake/pipeline/volume_stages.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/copies.h"
 #include "bake/scene/even_media.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/scene/shared_rows.h"
@@ -225,15 +226,26 @@ formats::Status bake_inspected(const BakeInputs& unlit, std::span<const Lamp> la
     return formats::ok_status();
 }
 
-formats::Status check_model_of(const EffectTable& effects, const formats::Scene& scene,
+// With copies as a reader of the file has them: vertices of their own.
+formats::Status check_model_of(const EffectTable& effects, const formats::Scene& given,
                                const Context& context, BakeResult& result) {
+    const std::vector<CopiedMesh> copies = find_copied_meshes(given);
+    std::optional<formats::Scene> expanded;
+    formats::AssetView asset = result.asset.view();
+    std::vector<std::uint64_t> words;
+    if (!copies.empty()) {
+        expand_copies(copies, expanded.emplace(given));
+        words.resize(formats::size_with_copies(asset) / sizeof(words[0]) + 1);
+        formats::restore_copies(asset, std::as_writable_bytes(std::span(words)));
+    }
+    const formats::Scene& scene = expanded ? *expanded : given;
     ModelCheckOptions options;
     options.simulated = held_light(effects, result.plan);
     options.lit_by_volumes = lights_surfaces(result.plan);
     options.volumes_see_surfaces = sees_surfaces(result.plan);
     options.seed = result.knobs.seed;
     auto checked = run_stage(result.stages, "model check", [&](std::uint64_t&) {
-        return check_model(scene, result.asset.view(), options, context);
+        return check_model(scene, asset, options, context);
     });
     if (!checked) return std::move(checked).error();
     result.model_error = std::move(*checked);

@@ -10,6 +10,7 @@
 #include "bake/effects/emitters/plan_emitters.h"
 #include "bake/exchange/lamps/lamps.h"
 #include "bake/pipeline/predict_memory.h"
+#include "bake/scene/copies.h"
 #include "bake/scene/shared_rows.h"
 
 namespace opaline::bake {
@@ -84,6 +85,16 @@ Knobs fit_refinement(const EffectTable& effects, const formats::Scene& scene, Kn
         knobs.refine.max_receivers = receivers + static_cast<std::uint64_t>(left * given / more);
     }
     return knobs;
+}
+
+formats::Result<ShareReport> share_copies_for_bake(const Knobs& knobs, const Context& context,
+                                                   formats::Scene& scene) {
+    const std::vector<CopiedMesh> copies = find_copied_meshes(scene);
+    if (copies.empty()) return ShareReport{};
+    if (!knobs.simplify) return ShareReport{copies.size(), 0, 0, copies};
+    formats::Result<RayScene> rays = RayScene::build(scene, context.threads);
+    if (!rays) return std::move(rays).error();
+    return share_copies(*rays, {interpolation_budget(knobs) / 3, knobs.seed}, context, scene);
 }
 
 std::optional<formats::Diagnostic> describe_bound(const RefineReport& report) {

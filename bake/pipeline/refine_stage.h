@@ -8,6 +8,7 @@
 #include "bake/plan/effect.h"
 #include "bake/plan/knobs.h"
 #include "bake/refine/refine_scene.h"
+#include "bake/refine/share_copies.h"
 #include "bake/refine/simplify_scene.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"
@@ -21,6 +22,11 @@ RefineLimits refine_limits(const Knobs& knobs, std::uint64_t receivers);
 /// [bytes]; as they are where nothing is refined.
 Knobs fit_refinement(const EffectTable& effects, const formats::Scene& scene, Knobs knobs,
                      unsigned threads, std::uint64_t memory);
+
+/// Decides which copies of a scene share rows (share_copies.h); none where Knobs::simplify is off.
+/// Those that do not are to be expanded. Errors: resource.
+formats::Result<ShareReport> share_copies_for_bake(const Knobs& knobs, const Context& context,
+                                                   formats::Scene& scene);
 
 /// A warning where the limit of receivers ended it; nothing where it did not.
 std::optional<formats::Diagnostic> describe_bound(const RefineReport& report);

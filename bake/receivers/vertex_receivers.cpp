@@ -120,6 +120,16 @@ float intersection_error_bound(float magnitude) {
     return std::max(bound, std::numeric_limits<float>::min());
 }
 
+Receiver moved(const Receiver& receiver, glm::vec3 offset) {
+    if (offset == glm::vec3(0)) return receiver;
+    // The sum, and the difference when rays run in the frame of the original.
+    constexpr float kRoundings = 4 * std::numeric_limits<float>::epsilon();
+    const glm::vec3 origin = receiver.origin + offset;
+    const glm::vec3 far = glm::max(glm::abs(origin), glm::abs(offset));
+    return {origin + kRoundings * std::max({far.x, far.y, far.z}) * receiver.normal,
+            receiver.normal};
+}
+
 float clearance_bound(glm::vec3 position, float extent) {
     // The test first subtracts the ray's origin from the corners, so its later roundings scale with
     // the extent alone. The origin itself is rounded twice by half an ulp per coordinate, when the

@@ -48,8 +48,9 @@ EdgeCut find_edge_cut(const formats::Scene& scene, const RayScene& rays, glm::ve
     double nearest = 0.5 - shortest / static_cast<double>(length);
     for (std::size_t lane = 0; lane < used; ++lane) {
         if (hits.hit[lane] == 0) continue;
-        const double share = share_at(scene.primitives[hits.primitive[lane]],
-                                      hits.first_index[lane], from, glm::dvec3(way));
+        const double share =
+            share_at(scene.primitives[hits.primitive[lane]], hits.first_index[lane],
+                     glm::dvec3(from) - glm::dvec3(hits.offset[lane]), glm::dvec3(way));
         if (!(std::abs(share - 0.5) < nearest)) continue;
         nearest = std::abs(share - 0.5);
         const bool forth = lane % 2 == 0, leaves = hits.cosine[lane] > 0;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "bake/scene/media_order.h"
+#include "bake/trace/hit_geometry.h"
 
 namespace opaline::bake {
 
@@ -22,7 +23,7 @@ struct BodiesAt::Query {
         arguments->valid[0] = 0;
         const unsigned n = arguments->N;
         auto& own = *reinterpret_cast<Query*>(arguments->context);
-        const std::uint32_t geometry = RTCHitN_geomID(arguments->hit, n, 0);
+        const std::uint32_t geometry = geometry_of(arguments->hit, n, 0);
         const std::uint32_t triangle = RTCHitN_primID(arguments->hit, n, 0);
         const std::uint32_t place =
             own.bodies.place_[own.bodies.triangles_->geometry(geometry).material];

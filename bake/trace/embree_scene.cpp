@@ -4,11 +4,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/scene/copies.h"
 #include "bake/scene/coverage.h"
 
 namespace opaline::bake {
@@ -85,6 +87,25 @@ bool add_triangles(RTCDevice device, RTCScene scene, const Primitive& p, Primiti
     return has_room;
 }
 
+// The triangles of `instanced` once more, moved.
+void add_instance(RTCDevice device, RTCScene scene, RTCScene instanced, glm::vec3 offset) {
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, instanced);
+    const std::array<float, 12> columns{1, 0, 0, 0, 1, 0, 0, 0, 1, offset.x, offset.y, offset.z};
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns.data());
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+}
+
+RTCScene new_scene(RTCDevice device, bool filters) {
+    RTCScene scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, filters ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
+                                    : RTC_SCENE_FLAG_ROBUST);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
+    return scene;
+}
+
 bool hides_inside(const formats::Material& material) {
     const bool is_clear = material.medium && material.medium->sigma_s == formats::Rgb{};
     return !material.double_sided && !is_clear;
@@ -127,21 +148,21 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
     };
     built.device_ = rtcNewDevice((std::string("isa=") + kInstructionSet).c_str());
     if (built.device_ == nullptr) return failed("the Embree device cannot be made");
-    built.scene_ = rtcNewScene(built.device_);
-    rtcSetSceneFlags(built.scene_,
-                     filters ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION
-                             : RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(built.scene_, RTC_BUILD_QUALITY_HIGH);
+    built.scene_ = new_scene(built.device_, filters);
+    const std::vector<std::vector<std::uint32_t>> copies = copies_of_primitives(scene);
+    // An arena of its own, because Embree's `threads` setting limits TBB in the whole process.
+    tbb::task_arena arena(threads != 0 ? static_cast<int>(threads) : tbb::task_arena::automatic);
     CoverageImages images;
     for (std::uint32_t number = 0; number < scene.primitives.size(); ++number) {
         const Primitive& p = scene.primitives[number];
         assert(p.index.size() % 3 == 0 && p.material < scene.materials.size());
-        glm::vec3 farthest(0);
+        if (p.position.empty()) continue;
+        glm::vec3 low = p.position[0], high = low;
         for (const glm::vec3& v : p.position) {
-            built.low_ = glm::min(built.low_, v);
-            built.high_ = glm::max(built.high_, v);
-            farthest = glm::max(farthest, glm::abs(v));
+            low = glm::min(low, v);
+            high = glm::max(high, v);
         }
+        built.extend(low, high);
         if (p.index.empty()) continue;
         PrimitiveHoles* holes = nullptr;
         if (auto coverage = make_coverage(scene, number, images)) {
@@ -150,21 +171,41 @@ formats::Result<EmbreeScene> EmbreeScene::build(const Scene& scene, unsigned thr
                 std::make_unique<PrimitiveHoles>(PrimitiveHoles{number, std::move(*coverage)}));
             holes = built.holes_.back().get();
         }
-        if (!add_triangles(built.device_, built.scene_, p, holes)) {
+        const bool is_repeated = !copies[number].empty();
+        RTCScene own = is_repeated ? new_scene(built.device_, filters) : built.scene_;
+        if (!add_triangles(built.device_, own, p, holes)) {
+            if (is_repeated) rtcReleaseScene(own);
             return failed("no memory for its geometry");
         }
-        const float magnitude = std::max({farthest.x, farthest.y, farthest.z});
-        built.geometries_.push_back({number, p.material, hides_inside(scene.materials[p.material]),
-                                     intersection_error_bound(magnitude)});
-        built.triangles_ += p.index.size() / 3;
+        const auto note = [&](glm::vec3 offset) {
+            const glm::vec3 far = glm::max(glm::abs(low + offset), glm::abs(high + offset));
+            built.geometries_.push_back(
+                {number, p.material, hides_inside(scene.materials[p.material]),
+                 intersection_error_bound(std::max({far.x, far.y, far.z})), offset});
+            built.triangles_ += p.index.size() / 3;
+        };
+        note(glm::vec3(0));
+        if (!is_repeated) continue;
+        arena.execute([&] { rtcCommitScene(own); });
+        add_instance(built.device_, built.scene_, own, glm::vec3(0));
+        for (const std::uint32_t copy : copies[number]) {
+            const glm::vec3 offset = scene.primitives[copy].copy.offset;
+            add_instance(built.device_, built.scene_, own, offset);
+            built.extend(low + offset, high + offset);
+            note(offset);
+        }
+        rtcReleaseScene(own);  // its instances keep it
     }
-    // An arena of its own, because Embree's `threads` setting limits TBB in the whole process.
-    tbb::task_arena arena(threads != 0 ? static_cast<int>(threads) : tbb::task_arena::automatic);
     arena.execute([&built] { rtcCommitScene(built.scene_); });
     if (rtcGetDeviceError(built.device_) != RTC_ERROR_NONE) {
         return failed("the ray hierarchy cannot be built");
     }
     return built;
+}
+
+void EmbreeScene::extend(glm::vec3 low, glm::vec3 high) {
+    low_ = glm::min(low_, low);
+    high_ = glm::max(high_, high);
 }
 
 std::string EmbreeScene::description() {

@@ -35,13 +35,14 @@ class EmbreeScene {
 
     RTCSceneTy* handle() const { return scene_; }
 
-    /// The triangles of one primitive.
+    /// The triangles of one primitive, or of a copy of one.
     struct Geometry {
-        std::uint32_t primitive, material;  ///< numbers of formats::Scene
+        std::uint32_t primitive, material;  ///< numbers of formats::Scene; of a copy's original
         bool hides;         ///< nobody sees what its back faces: not double-sided, nor clear
         float error_bound;  ///< [m], of the computed position of a hit
+        glm::vec3 offset;   ///< [m], formats::CopyOf; 0 of what is no copy
     };
-    /// `id`: RTCHit::geomID.
+    /// `id`: geometry_of a hit (hit_geometry.h).
     const Geometry& geometry(std::uint32_t id) const { return geometries_[id]; }
 
     std::uint64_t triangles() const { return triangles_; }
@@ -58,6 +59,7 @@ class EmbreeScene {
 
   private:
     EmbreeScene() = default;
+    void extend(glm::vec3 low, glm::vec3 high);  // the box
 
     RTCDeviceTy* device_ = nullptr;
     RTCSceneTy* scene_ = nullptr;

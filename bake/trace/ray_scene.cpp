@@ -8,6 +8,8 @@
 #include <cstring>
 #include <iterator>
 
+#include "bake/trace/hit_geometry.h"
+
 namespace opaline::bake {
 
 static_assert(sizeof(RayPacket) == sizeof(RTCRay16) && alignof(RayPacket) == alignof(RTCRay16));
@@ -61,13 +63,14 @@ PacketHits RayScene::closest(const LaneMask& lanes, const RayPacket& packet) con
         hits.normal_x[i] = x * inverse;
         hits.normal_y[i] = y * inverse;
         hits.normal_z[i] = z * inverse;
-        const EmbreeScene::Geometry& met = triangles_.geometry(ray.hit.geomID[i]);
+        const EmbreeScene::Geometry& met = triangles_.geometry(geometry_of_lane(ray.hit, i));
         hits.error[i] = met.error_bound;
         hits.material[i] = met.material;
         hits.primitive[i] = met.primitive;
         hits.first_index[i] = 3 * ray.hit.primID[i];
         hits.u[i] = ray.hit.u[i];
         hits.v[i] = ray.hit.v[i];
+        hits.offset[i] = met.offset;
     }
     return hits;
 }
@@ -77,7 +80,7 @@ LaneMask RayScene::meets_back_face(const LaneMask& lanes, const RayPacket& packe
     LaneMask back{};
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         if (lanes[i] != 0 && ray.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID &&
-            triangles_.geometry(ray.hit.geomID[i]).hides) {
+            triangles_.geometry(geometry_of_lane(ray.hit, i)).hides) {
             const float along = ray.hit.Ng_x[i] * packet.dir_x[i] +
                                 ray.hit.Ng_y[i] * packet.dir_y[i] +
                                 ray.hit.Ng_z[i] * packet.dir_z[i];

@@ -43,8 +43,10 @@ struct PacketHits {
     RayPacket::Lane error;   ///< bound [m] on the error of the hit's position
     RayPacket::LaneBits material;                  ///< index into Scene::materials
     RayPacket::Lane normal_x, normal_y, normal_z;  ///< unit, of the triangle; 0 without area
-    RayPacket::LaneBits primitive, first_index;    ///< of the triangle: Primitive::index
+    RayPacket::LaneBits primitive, first_index;    ///< of the triangle: Primitive::index; of a copy
+                                                   ///< that of its original
     RayPacket::Lane u, v;                          ///< weights of its second and third corner
+    std::array<glm::vec3, RayPacket::kSize> offset;  ///< [m], of a copy from there; else 0
 };
 
 /// All triangles of a scene, ready for packets of rays in the scene's frame. Immutable once built;

@@ -14,6 +14,7 @@
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/triangle.h"
 #include "bake/scene/weld.h"
+#include "bake/trace/hit_geometry.h"
 
 namespace opaline::bake {
 namespace {
@@ -33,13 +34,15 @@ struct Search {
 // Of Embree's point query, for each triangle whose box is near.
 bool visit(RTCPointQueryFunctionArguments* arguments) {
     Search& search = *static_cast<Search*>(arguments->userPtr);
-    const std::uint32_t number = search.triangles.geometry(arguments->geomID).primitive;
+    const EmbreeScene::Geometry& own = search.triangles.geometry(geometry_of(*arguments));
+    const std::uint32_t number = own.primitive;
     const formats::Primitive& p = search.scene.primitives[number];
     std::array<glm::dvec3, 3> to;
     float extent = 0;
     bool is_corner = false;
     for (std::size_t k = 0; k < 3; ++k) {
-        const glm::vec3 corner = p.position[p.index[3 * std::size_t{arguments->primID} + k]];
+        const glm::vec3 corner =
+            p.position[p.index[3 * std::size_t{arguments->primID} + k]] + own.offset;
         to[k] = glm::dvec3(corner) - glm::dvec3(search.position);
         const glm::vec3 way = glm::abs(corner - search.position);
         extent = std::max({extent, way.x, way.y, way.z});

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "bake/trace/hit_geometry.h"
+
 namespace opaline::bake {
 namespace {
 
@@ -35,7 +37,7 @@ WalkHit describe_hit(const WalkSpace& space, const FoundTriangle& found, glm::ve
     const std::uint32_t* corner = &p.index[hit.first_index];
     const glm::vec3 a = (1 - hit.u - hit.v) * p.position[corner[0]];
     const glm::vec3 b = hit.u * p.position[corner[1]], c = hit.v * p.position[corner[2]];
-    hit.position = a + b + c;
+    hit.position = a + b + c + geometry.offset;
     // Rounding of three products and two sums; and, for planes on which it is exact, some distance
     // all the same, so that a ray that leaves the triangle does not meet it again.
     constexpr float kRounding = std::numeric_limits<float>::epsilon();
@@ -86,12 +88,12 @@ float squared_distance(glm::vec3 a, glm::vec3 b, glm::vec3 c) {
 bool look_at_triangle(RTCPointQueryFunctionArguments* arguments) {
     NearestTriangle& nearest = *static_cast<NearestTriangle*>(arguments->userPtr);
     const WalkSpace& space = nearest.space;
-    const formats::Primitive& p =
-        space.scene->primitives[space.triangles->geometry(arguments->geomID).primitive];
+    const EmbreeScene::Geometry& own = space.triangles->geometry(geometry_of(*arguments));
+    const formats::Primitive& p = space.scene->primitives[own.primitive];
     const std::uint32_t* const corner = &p.index[3 * std::size_t{arguments->primID}];
-    const float square = squared_distance(p.position[corner[0]] - nearest.position,
-                                          p.position[corner[1]] - nearest.position,
-                                          p.position[corner[2]] - nearest.position);
+    const glm::vec3 from = nearest.position - own.offset;
+    const float square = squared_distance(
+        p.position[corner[0]] - from, p.position[corner[1]] - from, p.position[corner[2]] - from);
     if (!(square < nearest.square)) return false;
     nearest.square = square;
     arguments->query->radius = std::sqrt(square);
@@ -113,7 +115,7 @@ bool find_hit(const WalkSpace& space, glm::vec3 origin, glm::vec3 direction, flo
     rtcIntersect1(space.triangles->handle(), &context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     hit = describe_hit(space,
-                       {ray.hit.geomID,
+                       {geometry_of(ray.hit),
                         ray.hit.primID,
                         ray.hit.u,
                         ray.hit.v,
@@ -142,7 +144,7 @@ std::vector<std::optional<WalkHit>> find_hits(const WalkSpace& space, glm::vec3 
             if (ray.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
                 hits[first + i] =
                     describe_hit(space,
-                                 {ray.hit.geomID[i],
+                                 {geometry_of_lane(ray.hit, i),
                                   ray.hit.primID[i],
                                   ray.hit.u[i],
                                   ray.hit.v[i],
