@@ -19,7 +19,7 @@
 #include "bake/base/interrupted.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/interrupt.h"
+#include "bake/cli/progress.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/lights/builtin_environment.h"

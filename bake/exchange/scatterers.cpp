@@ -11,7 +11,7 @@
 #include "bake/receivers/other_side.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
-#include "bake/scene/texture_footprint.h"
+#include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
 namespace {

@@ -10,8 +10,8 @@
 #include "bake/base/rng.h"
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/surface_side.h"
-#include "bake/scene/emission.h"
-#include "bake/scene/texture_footprint.h"
+#include "bake/scene/base_color.h"
+#include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
 namespace {

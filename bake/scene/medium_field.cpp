@@ -8,7 +8,6 @@
 #include "bake/physics/scattering_color.h"
 #include "bake/scene/marble.h"
 #include "bake/scene/nearest_surface.h"
-#include "bake/scene/texture_footprint.h"
 #include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {

@@ -15,7 +15,7 @@
 
 #include "bake/check/check_model.h"
 #include "bake/check/model_truth.h"
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "runtime/light_vector.h"
 #include "tests/support/walk_bake.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bake/check/stored_luminance.h"
-#include "bake/lights/true_reflection.h"
+#include "bake/lights/true_irradiance.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/trace/hidden_receivers.h"
 #include "tests/support/media_bake.h"

@@ -1,5 +1,5 @@
 // Which samples of a picture see a surface that light passes in places.
-#include "runtime/holes.h"
+#include "runtime/surface.h"
 
 #include <gtest/gtest.h>
 

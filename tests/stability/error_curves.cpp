@@ -8,7 +8,7 @@
 #include "bake/physics/fresnel.h"
 #include "bake/physics/mie/sphere_scattering.h"
 #include "bake/physics/path_differentials/lobe.h"
-#include "bake/physics/poisson_phase.h"
+#include "bake/physics/phase.h"
 #include "tests/stability/naive_forms.h"
 #include "tests/stability/stability_table.h"
 

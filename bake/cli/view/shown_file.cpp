@@ -9,7 +9,7 @@
 #include "bake/base/stage_log.h"
 #include "bake/cli/draw_frames.h"
 #include "formats/opal/emitters.h"
-#include "runtime/picture/auto_exposure.h"
+#include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
 #include "runtime/specular.h"
 #include "runtime/terms.h"

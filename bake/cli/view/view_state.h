@@ -38,7 +38,7 @@ struct ViewState {
     float fov = 32;                            ///< vertical angle of view [degrees], in (0, 180)
     double rotate_light = 0;                   ///< about +Y, in [0, 360) [degrees]
     double time = 0;                           ///< of cloud layers [s]
-    /// [EV], in [-64, 64]; nothing: chosen from the picture (auto_exposure.h).
+    /// [EV], in [-64, 64]; nothing: chosen from the picture (tone_map.h).
     std::optional<float> exposure;
     runtime::ToneMap tone_map = runtime::ToneMap::neutral;
     formats::TermSet terms = formats::TermSet::baked;

@@ -10,7 +10,7 @@
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
-#include "bake/plan/scattered_once.h"
+#include "bake/plan/medium_exitance.h"
 #include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {

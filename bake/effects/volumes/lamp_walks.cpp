@@ -11,7 +11,7 @@
 #include "bake/effects/volumes/walk_parts.h"
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/lamps/spread_points.h"
-#include "bake/physics/path_differentials/area_sample.h"
+#include "bake/physics/path_differentials/axis_frame.h"
 #include "bake/scene/punctual_light.h"
 #include "bake/trace/packet_lane.h"
 #include "formats/opal/spherical_harmonics.h"

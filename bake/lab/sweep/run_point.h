@@ -13,7 +13,6 @@
 #include "bake/effects/layers/layer_error.h"
 #include "bake/lab/sweep/ladders.h"
 #include "bake/lab/sweep/probes.h"
-#include "bake/lab/sweep/sweep_volumes.h"
 #include "bake/pipeline/pipeline.h"
 #include "formats/opal/clouds.h"
 #include "formats/opal/environment.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "bake/base/stage_log.h"
-#include "bake/lab/sweep/time_limit.h"
+#include "bake/lab/sweep/run_sweep.h"
 
 namespace opaline::bake {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bake/effects/volumes/add_scattered.h"
+#include "bake/effects/volumes/volume_walks.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/bake/volumes/volume_support.h"
 

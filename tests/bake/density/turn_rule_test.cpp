@@ -1,4 +1,3 @@
-#include "bake/trace/density/turn_rule.h"
 
 #include <gtest/gtest.h>
 

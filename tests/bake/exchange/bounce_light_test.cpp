@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "bake/check/check_model.h"
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "tests/bake/exchange/bounce_support.h"
 
 namespace opaline::bake {

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "bake/check/check_model.h"
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/scene/lobe_record.h"
 #include "tests/bake/exchange/bounce_support.h"
 

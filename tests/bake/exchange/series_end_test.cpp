@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "tests/bake/exchange/bounce_support.h"
 #include "tests/support/media.h"
 

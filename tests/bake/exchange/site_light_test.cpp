@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
 #include "formats/opal/cubemap.h"

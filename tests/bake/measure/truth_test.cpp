@@ -7,7 +7,7 @@
 
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/single/true_single.h"
-#include "bake/lights/true_reflection.h"
+#include "bake/lights/true_irradiance.h"
 #include "bake/physics/fresnel.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "formats/opal/cubemap.h"

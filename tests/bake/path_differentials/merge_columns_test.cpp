@@ -1,4 +1,3 @@
-#include "bake/physics/path_differentials/merge_columns.h"
 
 #include <vector>
 

@@ -1,4 +1,4 @@
-#include "bake/physics/path_differentials/visible_normal.h"
+#include "bake/physics/path_differentials/lobe.h"
 
 #include "tests/bake/path_differentials/event_check.h"
 

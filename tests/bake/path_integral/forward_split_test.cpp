@@ -1,4 +1,4 @@
-#include "bake/physics/path_integral/forward_split.h"
+#include "bake/physics/path_integral/turn.h"
 
 #include <gtest/gtest.h>
 

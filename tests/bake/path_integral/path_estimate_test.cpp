@@ -1,4 +1,4 @@
-#include "bake/physics/path_integral/path_estimate.h"
+#include "bake/physics/path_integral/quasi_path.h"
 
 #include <gtest/gtest.h>
 

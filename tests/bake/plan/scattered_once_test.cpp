@@ -1,4 +1,4 @@
-#include "bake/plan/scattered_once.h"
+#include "bake/plan/medium_exitance.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include "bake/physics/poisson_phase.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bake/physics/phase_series.h"
-#include "bake/physics/poisson_phase.h"
+#include "bake/physics/phase.h"
 #include "tests/bake/scattering/phase_support.h"
 #include "tests/support/volume_table.h"
 

@@ -1,4 +1,4 @@
-#include "bake/scene/emission.h"
+#include "bake/scene/base_color.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/scene/texture_footprint.h"
+#include "bake/scene/texture_pyramid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "bake/scene/texture_taps.h"
+#include "bake/scene/sample_image.h"
 
 #include <gtest/gtest.h>
 

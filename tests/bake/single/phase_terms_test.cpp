@@ -1,4 +1,3 @@
-#include "bake/effects/single/phase_terms.h"
 
 #include <gtest/gtest.h>
 

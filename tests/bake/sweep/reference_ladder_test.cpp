@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bake/lab/sweep/slopes.h"
+#include "bake/lab/sweep/analysis.h"
 #include "tests/support/media.h"
 
 namespace opaline::bake {

@@ -1,4 +1,4 @@
-#include "bake/lab/sweep/slopes.h"
+#include "bake/lab/sweep/analysis.h"
 
 #include <gmock/gmock.h>
 

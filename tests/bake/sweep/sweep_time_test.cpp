@@ -6,7 +6,6 @@
 
 #include "bake/base/stage_log.h"
 #include "bake/lab/sweep/run_sweep.h"
-#include "bake/lab/sweep/time_limit.h"
 #include "tests/support/effects.h"
 #include "tests/support/media.h"
 

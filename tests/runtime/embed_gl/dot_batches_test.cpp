@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/embed_gl/spread_batches.h"
 #include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 

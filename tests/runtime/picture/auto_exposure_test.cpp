@@ -1,4 +1,4 @@
-#include "runtime/picture/auto_exposure.h"
+#include "runtime/picture/tone_map.h"
 
 #include <gtest/gtest.h>
 
