@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bake/effects/multiple/choose_model.h"
+#include "bake/effects/multiple/gather_multiple.h"
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
