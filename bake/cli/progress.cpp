@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <fmt/core.h>
+
 #include <chrono>
 #include <csignal>
 #include <memory>

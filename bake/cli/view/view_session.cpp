@@ -3,6 +3,7 @@
 #include <imgui.h>
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
