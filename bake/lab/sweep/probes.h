@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/check/measure_error.h"
-#include "bake/check/model_truth.h"
+#include "bake/check/model_pairs.h"
 #include "bake/check/volumes/volume_error.h"
 #include "formats/opal/asset.h"
 #include "formats/opal/result.h"

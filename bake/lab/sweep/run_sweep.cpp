@@ -16,7 +16,6 @@
 #include "bake/effects/volumes/plan_volumes.h"
 #include "bake/lab/sweep/finest.h"
 #include "bake/lab/sweep/run_point.h"
-#include "bake/lab/sweep/trace_truths.h"
 #include "bake/lights/builtin_environment.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/pipeline/plan_scene.h"

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "bake/base/rng.h"
-#include "bake/exchange/even_choice.h"
 #include "bake/exchange/scatterers.h"
 #include "bake/exchange/seen_light.h"
 #include "bake/plan/surface_albedo.h"

@@ -7,7 +7,7 @@
 #include "bake/effects/multiple/gather_profile.h"
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/sample_transport.h"
-#include "bake/effects/multiple/unfinished_walks.h"
+#include "bake/effects/multiple/choose_model.h"
 #include "bake/physics/fresnel.h"
 #include "bake/physics/slab/even_light.h"
 #include "bake/receivers/surface_samples.h"

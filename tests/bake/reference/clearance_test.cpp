@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/scene/media_order.h"
+#include "bake/scene/nested_media.h"
 #include "bake/trace/clearance_grid.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/walks/nested_bodies.h"

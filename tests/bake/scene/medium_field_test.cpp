@@ -3,7 +3,6 @@
 #include <tbb/global_control.h>
 
 #include "bake/physics/scattering_color.h"
-#include "bake/scene/even_media.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/scene/marble.h"
 #include "bake/scene/medium_field.h"

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "runtime/surface.h"
-#include "runtime/normal_maps/normal_map.h"
 #include "runtime/normal_maps/turned_light.h"
 #include "runtime/texture.h"
 #include "tests/bench/gl_parity/comparisons.h"

@@ -5,8 +5,6 @@
 #include <fstream>
 
 #include "bake/cli/view/file_watch.h"
-#include "bake/cli/view/orbit_camera.h"
-#include "bake/cli/view/render_line.h"
 #include "bake/cli/view/view_script.h"
 #include "bake/cli/view/view_state.h"
 #include "tests/support/temporary_folder.h"
