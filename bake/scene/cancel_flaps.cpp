@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bake/scene/body_shells.h"
-#include "bake/scene/separate_bodies.h"
+#include "bake/scene/parts_apart.h"
 #include "formats/disjoint_sets.h"
 
 namespace opaline::bake {

@@ -16,7 +16,7 @@
 #include "bake/scene/coverage.h"
 #include "bake/scene/horizon.h"
 #include "bake/scene/nested_media.h"
-#include "bake/scene/separate_bodies.h"
+#include "bake/scene/parts_apart.h"
 #include "bake/scene/scene_facts.h"
 #include "bake/scene/sent_share.h"
 #include "bake/scene/shared_rows.h"

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <optional>
 #include <vector>
 
 #include "formats/scene.h"
@@ -40,14 +39,5 @@ class SeparateBodies {
     float error_ = 0;  // of places along directions, by rounding [m]
     std::uint32_t count_ = 0;
 };
-
-/// The primitives of a material that have triangles, in sets whose bounding boxes are apart: no
-/// point of one set is a point of another. Sets and their members in the order of the scene.
-std::vector<std::vector<std::uint32_t>> list_parts_apart(const formats::Scene& scene,
-                                                         std::uint32_t material);
-
-/// How many times as large a primitive is as another of the same mesh, where it is the same shape,
-/// moved, turned and scaled evenly, within the rounding of positions; nothing where it is not.
-std::optional<double> scale_of_copy(const formats::Primitive& copy, const formats::Primitive& of);
 
 }  // namespace opaline::bake

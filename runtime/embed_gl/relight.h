@@ -10,6 +10,7 @@
 #include "formats/opal/terms.h"
 #include "runtime/embed_gl/dot_batches.h"
 #include "runtime/embed_gl/gl_names.h"
+#include "runtime/embed_gl/spread_batches.h"
 #include "runtime/emitter_light.h"
 #include "runtime/part_lights.h"
 

@@ -9,7 +9,7 @@
 #include "bake/scene/body_shells.h"
 #include "bake/scene/coverage.h"
 #include "bake/scene/horizon.h"
-#include "bake/scene/separate_bodies.h"
+#include "bake/scene/parts_apart.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
 

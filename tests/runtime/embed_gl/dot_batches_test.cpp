@@ -1,4 +1,5 @@
 #include "runtime/embed_gl/dot_batches.h"
+#include "runtime/embed_gl/spread_batches.h"
 
 #include <gtest/gtest.h>
 
