@@ -54,7 +54,7 @@ struct PhaseSubject {
 
 using formats::PhaseFunction;
 
-constexpr unsigned kDegrees = 32;
+constexpr unsigned kSeriesDegrees = 32;
 /// Rows of a table: what is left out is within this of the line between its neighbours, relative.
 constexpr double kRowTolerance = 2e-3;
 
@@ -75,7 +75,7 @@ PhaseSubject make_droplet_subject(const DropletOptions& options) {
     }
     subject.json.update(describe_droplets(options.droplets));
     subject.error = describe_error(droplets);
-    subject.series = bake::expand_table(droplets.phase, kDegrees);
+    subject.series = bake::expand_table(droplets.phase, kSeriesDegrees);
     const std::vector<double> angles = bake::thin_table(droplets.phase, kRowTolerance).angle;
     for (auto angle = angles.rbegin(); angle != angles.rend(); ++angle) {
         subject.cosines.push_back(std::cos(*angle));
@@ -129,7 +129,7 @@ PhaseSubject make_phase_subject(const PhaseChoice& choice) {
     if (choice.type == Type::henyey_greenstein) {
         const double g = choice.g;  // not rounded to the single precision of PhaseFunction
         return PhaseSubject{[g](double cosine) { return bake::henyey_greenstein(cosine, g); },
-                            bake::expand_henyey_greenstein(g, kDegrees),
+                            bake::expand_henyey_greenstein(g, kSeriesDegrees),
                             {{"type", "hg"}, {"g", g}}};
     }
     PhaseFunction phase;
@@ -150,7 +150,7 @@ PhaseSubject make_phase_subject(const PhaseChoice& choice) {
     }
     const bake::PhaseDensity density = bake::make_phase_density(phase);
     PhaseSubject subject{[density](double cosine) { return bake::eval_phase(density, cosine); },
-                         bake::expand_phase(phase, kDegrees), std::move(json)};
+                         bake::expand_phase(phase, kSeriesDegrees), std::move(json)};
     subject.table_cosines.assign(phase.cosine.begin(), phase.cosine.end());
     return subject;
 }
