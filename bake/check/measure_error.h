@@ -9,7 +9,7 @@
 
 #include "bake/effects/rows/subject_states.h"
 #include "bake/effects/volumes/complete_rows.h"
-#include "bake/lights/draw_receivers.h"
+#include "bake/lights/test_lights.h"
 #include "bake/lights/luminance.h"
 #include "formats/opal/asset.h"
 

@@ -11,7 +11,7 @@
 #include "bake/base/rng.h"
 #include "bake/check/pilot/pilot_rows.h"
 #include "bake/check/subject_truth.h"
-#include "bake/lights/draw_receivers.h"
+#include "bake/lights/test_lights.h"
 #include "bake/receivers/used_vertices.h"
 
 namespace opaline::bake {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/effects/multiple/cluster_tree.h"
-#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/plan/dense_rows.h"
 #include "bake/plan/row_layout.h"

@@ -6,7 +6,7 @@
 
 #include "bake/base/context.h"
 #include "bake/effects/multiple/cluster_tree.h"
-#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
 #include "bake/trace/ray_scene.h"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "bake/effects/multiple/gather_profile.h"
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/choose_model.h"
