@@ -10,7 +10,6 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/check/bootstrap.h"
-#include "bake/check/sent_truth.h"
 #include "bake/check/stored_luminance.h"
 #include "bake/check/subject_truth.h"
 #include "bake/check/surface_probes.h"

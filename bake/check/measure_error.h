@@ -9,7 +9,7 @@
 
 #include "bake/effects/rows/subject_states.h"
 #include "bake/effects/volumes/complete_rows.h"
-#include "bake/lights/draw_receivers.h"
+#include "bake/lights/test_lights.h"
 #include "bake/lights/luminance.h"
 #include "formats/opal/asset.h"
 
@@ -92,7 +92,7 @@ ErrorBounds bound_error(std::span<const CheckedPair> pairs, std::size_t lights, 
 
 /// The same as a file states it: its upper end allows for two more receivers that err as the worst
 /// of these does. A plain bootstrap of 32 receivers contains the error of all in 80 of 100 cases
-/// where shadows are sharp (tests/pipeline/coverage_test.cpp). `pairs` must not be empty.
+/// where shadows are sharp (tests/pipeline/holes_test.cpp). `pairs` must not be empty.
 ErrorBounds bound_stated_error(std::span<const CheckedPair> pairs, std::size_t lights,
                                std::uint64_t seed);
 

@@ -7,7 +7,6 @@
 
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/outputs.h"

@@ -8,11 +8,10 @@
 #include <vector>
 
 #include "bake/base/stage_log.h"
-#include "bake/cli/interrupt.h"
+#include "bake/cli/progress.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/outputs.h"
-#include "bake/cli/write_picture.h"
-#include "runtime/picture/auto_exposure.h"
+#include "runtime/picture/tone_map.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"

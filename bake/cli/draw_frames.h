@@ -27,7 +27,7 @@ enum class Backend { automatic, gl, cpu };
 struct FrameOptions {
     std::string output;
     Backend backend = Backend::automatic;
-    /// [EV]; nothing: chosen from the first frame (auto_exposure.h), 0 of radiance (.exr).
+    /// [EV]; nothing: chosen from the first frame (tone_map.h), 0 of radiance (.exr).
     std::optional<float> exposure;
     runtime::ToneMap tone_map = runtime::ToneMap::neutral;
     std::uint32_t frames = 1;  ///< 1 or more

@@ -1,5 +1,6 @@
 #include <fcntl.h>
 #include <fmt/core.h>
+
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,9 +20,9 @@
 #include "bake/base/interrupted.h"
 #include "bake/cli/command.h"
 #include "bake/cli/inputs.h"
-#include "bake/cli/interrupt.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
+#include "bake/cli/progress.h"
 #include "bake/lights/builtin_environment.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/result.h"

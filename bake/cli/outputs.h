@@ -7,6 +7,8 @@
 
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/result.h"
+#include "runtime/picture/picture.h"
+#include "runtime/picture/tone_map.h"
 
 namespace opaline::cli {
 
@@ -31,5 +33,10 @@ void commit_outputs(std::span<formats::AtomicFile> files);
 
 /// The ending of a path in lower case, its dot included: ".png" of "A.PNG".
 std::string ending_of(const std::filesystem::path& path);
+
+/// Radiance times 2^exposure as OpenEXR, or tone-mapped as PNG: by the ending of the path, which is
+/// one of the two. Errors: resource.
+formats::Status write_picture(const std::string& path, const runtime::Picture& picture,
+                              float exposure, runtime::ToneMap map = runtime::ToneMap::neutral);
 
 }  // namespace opaline::cli

@@ -16,7 +16,7 @@
 #include "bake/pipeline/savings.h"
 #include "bake/pipeline/unmet_requests.h"
 #include "bake/scene/cancel_flaps.h"
-#include "bake/scene/even_media.h"
+#include "bake/scene/medium_field.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/scene/shared_rows.h"
 

@@ -1,9 +1,11 @@
 #include "bake/cli/progress.h"
 
-#include <fmt/core.h>
 #include <unistd.h>
 
+#include <fmt/core.h>
+
 #include <chrono>
+#include <csignal>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -12,6 +14,15 @@
 
 namespace opaline::cli {
 namespace {
+
+// A signal handler can reach nothing but a global.
+std::atomic<bool> interrupt_caught = false;
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+void on_signal(int number) {
+    interrupt_caught.store(true);
+    std::signal(number, SIG_DFL);
+}
 
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
@@ -51,6 +62,15 @@ std::string write_line(const Json& line) {
 }
 
 }  // namespace
+
+const std::atomic<bool>& catch_interrupts() {
+    for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+        if (std::signal(number, on_signal) == SIG_IGN) {
+            std::signal(number, SIG_IGN);
+        }
+    }
+    return interrupt_caught;
+}
 
 void add_progress_option(const Command& command, ProgressStyle& style) {
     command.add("--progress",

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <map>
 #include <string>
@@ -8,6 +9,11 @@
 #include "bake/cli/command.h"
 
 namespace opaline::cli {
+
+/// From now on SIGINT, SIGTERM and SIGHUP set the returned flag instead of ending the program, so
+/// that temporary files are removed on the way out. A second signal ends it at once. Signals that
+/// the program was told to ignore, as by nohup, stay ignored.
+const std::atomic<bool>& catch_interrupts();
 
 enum class ProgressStyle {
     automatic,  ///< a bar with the time left, on a terminal only

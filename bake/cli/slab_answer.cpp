@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/cli/interrupt.h"
+#include "bake/cli/progress.h"
 #include "bake/cli/machine_limits.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"

@@ -11,7 +11,7 @@
 #include "bake/effects/layers/plan_layers.h"
 #include "bake/effects/local/local.h"
 #include "bake/effects/multiple/multiple.h"
-#include "bake/effects/multiple/rule_spread.h"
+#include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/sheet/sheet.h"
 #include "bake/effects/single/single.h"
 #include "bake/effects/specular/specular.h"

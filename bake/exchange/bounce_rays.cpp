@@ -10,7 +10,7 @@
 #include "bake/base/rng.h"
 #include "bake/exchange/narrow_lobe.h"
 #include "bake/physics/fresnel.h"
-#include "bake/physics/path_differentials/visible_normal.h"
+#include "bake/physics/path_differentials/lobe.h"
 #include "bake/receivers/receiver.h"
 
 namespace opaline::bake {

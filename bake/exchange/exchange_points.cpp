@@ -1,14 +1,45 @@
 #include "bake/exchange/exchange_points.h"
 
 #include <algorithm>
+#include <glm/glm.hpp>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "bake/exchange/bounce_light.h"
 #include "bake/trace/bodies_at.h"
+#include "formats/opal/asset.h"
 
 namespace opaline::bake {
 namespace {
+
+std::uint32_t nearest_scatterer(const PatchLight& points, const Receiver& at) {
+    float least = std::numeric_limits<float>::max();
+    std::uint32_t nearest = formats::kNone;
+    for (const std::uint32_t material : points.materials) {
+        const std::uint32_t node = points.tree.find(at.origin, {material, false, at.normal}, 0);
+        if (node == formats::kNone) continue;
+        const std::uint32_t found = points.tree.scatterer_of(node);
+        const glm::vec3 d = points.scatterers[found].position - at.origin;
+        if (glm::dot(d, d) < least) {
+            least = glm::dot(d, d);
+            nearest = found;
+        }
+    }
+    if (nearest != formats::kNone) return nearest;
+    // No scatterer faces that way.
+    nearest = points.members.front();
+    for (const std::uint32_t i : points.members) {
+        const glm::vec3 d = points.scatterers[i].position - at.origin;
+        const float square =
+            glm::dot(d, d) * (glm::dot(points.scatterers[i].normal, at.normal) > 0 ? 1.0f : 4.0f);
+        if (square < least) {
+            least = square;
+            nearest = i;
+        }
+    }
+    return nearest;
+}
 
 // Not those in or against other bodies.
 void leave_out_hidden_points(const LightInputs& inputs, std::uint32_t material,
@@ -60,6 +91,10 @@ std::vector<std::uint32_t> group_media(const SceneFacts& facts) {
 }
 
 }  // namespace
+
+void add_patch(const PatchLight& light, const Receiver& at, std::span<float> row) {
+    row[light.patch[nearest_scatterer(light, at)]] += 1;
+}
 
 ExchangePoints place_exchange(const LightInputs& inputs, std::uint64_t& rays) {
     ExchangePoints points{find_scatterers(inputs, count_scatterers(inputs.rays_of_receiver), rays)};

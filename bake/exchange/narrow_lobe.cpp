@@ -6,7 +6,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
-#include "bake/physics/path_differentials/visible_normal.h"
+#include "bake/physics/path_differentials/lobe.h"
 #include "bake/plan/surface_albedo.h"
 #include "bake/receivers/receiver.h"
 

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "bake/exchange/lamp_bounces.h"
-#include "bake/exchange/patch_light.h"
+#include "bake/exchange/exchange_points.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

@@ -17,7 +17,7 @@
 namespace opaline::bake {
 
 struct LampBounces;  // lamp_bounces.h
-struct PatchLight;   // patch_light.h
+struct PatchLight;   // exchange_points.h
 
 /// Light that arrives at surfaces besides that of the distant environment, or instead of it: one
 /// of the three. Its directions are not kept: effects take it for diffuse.

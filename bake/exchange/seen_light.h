@@ -2,11 +2,15 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
 
 #include "bake/base/context.h"
 #include "bake/exchange/bounce_light.h"
+#include "bake/exchange/lamp_bounces.h"
+#include "bake/plan/dense_rows.h"
+#include "bake/plan/effect.h"
 #include "bake/trace/coded_rows.h"
 #include "bake/trace/density/attenuation.h"
 #include "bake/trace/density/density_space.h"
@@ -39,5 +43,13 @@ struct MetPlace {
 /// bodies, and what is behind opaque surfaces.
 void add_seen(const SeenLight& seen, const MetPlace& met, const std::array<float, 3>& weight,
               std::size_t first, std::size_t end, std::span<float> sum);
+
+/// Adds the radiance [nit] that views see of lamps and of what these light, times their weights and
+/// factors: of lamp e to column e of each band of the row of each factor. It is the radiance of
+/// surfaces and volumes that glow, and exitance over pi of the others, the same in all directions;
+/// metals and media pass a view on. `solid_angle` [sr] of each view: textures are means over it.
+/// `key`: of the random numbers. Any thread; returns the rays traced.
+std::uint64_t add_seen_lamps(const LampBounces& light, std::span<const SurfaceView> views,
+                             double solid_angle, std::uint64_t key, const DenseRow& row);
 
 }  // namespace opaline::bake

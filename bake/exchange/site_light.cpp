@@ -9,7 +9,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/exchange/bounce_gather.h"
-#include "bake/exchange/even_choice.h"
+#include "bake/exchange/scatterers.h"
 
 namespace opaline::bake {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bake/physics/path_differentials/visible_normal.h"
+#include "bake/physics/path_differentials/lobe.h"
 #include "formats/opal/rgb.h"
 
 namespace opaline::bake {

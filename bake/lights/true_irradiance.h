@@ -6,8 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "bake/lights/luminance.h"
 #include "bake/lights/test_lights.h"
 #include "bake/receivers/receiver.h"
+#include "bake/trace/direction_set.h"
 #include "bake/trace/ray_scene.h"
 
 namespace opaline::bake {
@@ -77,5 +79,19 @@ std::uint64_t add_smooth_irradiance(const RayScene& rays, const SmoothLights& li
 std::uint64_t add_smooth_radiance(const RayScene& rays, const SmoothLights& lights,
                                   const Receiver& receiver, glm::vec3 direction, double factor,
                                   std::span<double> radiance);
+
+/// True reflected luminance of opaque receivers with albedo 1: rays to the suns, dense quadrature
+/// of all other light.
+struct ReflectionTruth {
+    DirectionSet directions;
+    SunRays suns;
+    std::span<const TestLight> lights;
+};
+/// `lights` must outlive the result.
+ReflectionTruth make_reflection_truth(std::span<const TestLight> lights,
+                                      const DensitySpace* between = nullptr);
+/// Both estimates are equal, because the computation is deterministic. `traced` adds up.
+TwoEstimates eval_reflection(const ReflectionTruth& truth, const RayScene& rays,
+                             const Receiver& receiver, std::uint64_t& traced);
 
 }  // namespace opaline::bake

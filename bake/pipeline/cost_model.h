@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bake/plan/effect.h"
-#include "bake/plan/stage_rates.h"
+#include "bake/plan/stage_work.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {

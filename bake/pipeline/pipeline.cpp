@@ -28,12 +28,11 @@
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/copies.h"
-#include "bake/scene/even_media.h"
+#include "bake/scene/medium_field.h"
 #include "bake/scene/orient_bodies.h"
 #include "bake/scene/shared_rows.h"
 #include "bake/trace/contacts.h"
 #include "bake/trace/hidden_receivers.h"
-#include "bake/trace/stand_ins.h"
 #include "bake/trace/touching_triangles.h"
 
 namespace opaline::bake {

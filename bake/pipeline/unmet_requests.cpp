@@ -6,7 +6,7 @@
 
 #include "bake/check/error_warnings.h"
 
-#include "bake/scene/emission.h"
+#include "bake/scene/base_color.h"
 
 namespace opaline::bake {
 namespace {

@@ -9,7 +9,7 @@
 #include "bake/effects/volumes/volume_effects.h"
 #include "bake/effects/volumes/volume_knobs.h"
 #include "bake/effects/volumes/volume_parts.h"
-#include "bake/lights/draw_receivers.h"
+#include "bake/lights/test_lights.h"
 #include "bake/pipeline/volume_stages.h"
 
 namespace opaline::bake {

@@ -1,5 +1,7 @@
 #include "bake/plan/stage_work.h"
 
+#include <cmath>
+
 #include "bake/lights/test_lights.h"
 #include "bake/trace/bake_openness.h"
 #include "formats/opal/cubemap.h"
@@ -15,6 +17,15 @@ double texels(std::uint32_t n) {
 }
 
 }  // namespace
+
+double StageRates::factor(const std::string& kind) const {
+    if (const auto known = kinds.find(kind); known != kinds.end()) return known->second.factor;
+    double sum = 0;
+    for (const auto& [name, learnt] : kinds) {
+        sum += std::log(learnt.factor);
+    }
+    return kinds.empty() ? 1 : std::exp(sum / static_cast<double>(kinds.size()));
+}
 
 double count_rays(std::uint32_t cubemap_size) {
     return 2 * texels(cubemap_size);

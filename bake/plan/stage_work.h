@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <map>
+#include <string>
 
 #include "bake/plan/knobs.h"
 #include "bake/plan/row_layout.h"
@@ -9,6 +12,22 @@
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// How long stages take on this machine over what counts and constants say, by kind of stage
+/// (StageCost::kind). Predictions use it; decisions, and so files, do not.
+struct StageRates {
+    struct Learnt {
+        double factor = 1;        ///< > 0: geometric mean over bakes, later ones count more
+        std::uint32_t bakes = 0;  ///< that it was learnt from
+
+        bool operator==(const Learnt&) const = default;
+    };
+    std::map<std::string, Learnt> kinds;
+
+    /// Of a kind that no bake here had: the machine's speed, the geometric mean of all kinds; 1
+    /// where nothing was learnt.
+    double factor(const std::string& kind) const;
+};
 
 /// Seconds of one thread per unit of work as a function of the number of triangles: two values,
 /// linear in log2 of the number (the depth of the hierarchy) between and beyond them.

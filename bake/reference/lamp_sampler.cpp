@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "bake/scene/emission.h"
+#include "bake/scene/base_color.h"
 
 namespace opaline::bake {
 namespace {

@@ -10,7 +10,7 @@
 #include "bake/reference/rough_boundary.h"
 #include "bake/reference/shading_normal.h"
 #include "bake/reference/volume_flight.h"
-#include "bake/scene/emission.h"
+#include "bake/scene/base_color.h"
 
 namespace opaline::bake {
 namespace {

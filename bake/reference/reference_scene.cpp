@@ -8,7 +8,7 @@
 
 #include "bake/reference/ggx.h"
 #include "bake/scene/body_shells.h"
-#include "bake/scene/media_order.h"
+#include "bake/scene/nested_media.h"
 
 namespace opaline::bake {
 

@@ -41,7 +41,7 @@ inline bool is_matched(float ratio) {
 }
 
 /// The bodies around a point. Where several overlap, the one of the last medium fills the space:
-/// media are numbered in that order (scene/media_order.h).
+/// media are numbered in that order (scene/nested_media.h).
 struct SurroundingMedia {
     static constexpr std::uint32_t kCapacity = 8;  ///< of different media
     struct Bodies {

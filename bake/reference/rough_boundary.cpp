@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/reference/directional_albedo.h"
+#include "bake/reference/glossy_brdf.h"
 #include "bake/reference/ggx.h"
 
 namespace opaline::bake {

@@ -2,7 +2,6 @@
 #include "bake/reference/lamp_sampler.h"
 #include "bake/reference/path_filter.h"
 #include "bake/scene/base_color.h"
-#include "bake/scene/emission.h"
 
 namespace opaline::bake {
 namespace {

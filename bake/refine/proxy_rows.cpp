@@ -10,7 +10,6 @@
 #include "bake/exchange/lamps/straight_light.h"
 #include "bake/physics/phase_series.h"
 #include "bake/receivers/surface_samples.h"
-#include "bake/trace/block_irradiance.h"
 #include "bake/trace/hidden_receivers.h"
 #include "bake/trace/irradiance_transport.h"
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/trace/block_irradiance.h"
+#include "bake/trace/irradiance_transport.h"
 
 namespace opaline::bake {
 namespace {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "bake/scene/body_shells.h"
 #include "formats/scene.h"
 
 namespace opaline::bake {
@@ -69,5 +70,10 @@ struct Passage {
 /// meets it with that probability: a hash of the ray and the triangle decides, so that the answer
 /// depends on no order, and the choices of rays, and of layers on one ray, are independent.
 bool meets_surface(const Coverage& coverage, const Passage& passage, float u, float v);
+
+/// Bound on the area [m^2] of the holes of a surface: of discs with borders as long as theirs, hole
+/// by hole. Open edges that are connected bound one hole. By the isoperimetric inequality pieces of
+/// a plane have holes as large as themselves at least, however many they are.
+double bound_hole_area(const BodyShells& body);
 
 }  // namespace opaline::bake

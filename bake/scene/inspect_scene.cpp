@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "bake/scene/body_shells.h"
-#include "bake/scene/holes.h"
+#include "bake/scene/coverage.h"
 #include "bake/scene/horizon.h"
 #include "bake/scene/nested_media.h"
 #include "bake/scene/parts_apart.h"

@@ -10,7 +10,7 @@
 #include "bake/scene/body_shells.h"
 #include "bake/scene/cancel_flaps.h"
 #include "bake/scene/coverage.h"
-#include "bake/scene/weld_seams.h"
+#include "bake/scene/weld.h"
 
 namespace opaline::bake {
 namespace {

@@ -31,7 +31,7 @@ struct OrientedBodies {
 /// inside are turned outward, too, and a material of such alone has one side. Where it has others,
 /// it becomes a sheet that transmits nothing, which has light on each of its sides.
 ///
-/// Seams that rounding opened are closed (weld_seams.h). Vertices at one position are one point.
+/// Seams that rounding opened are closed (weld.h). Vertices at one position are one point.
 /// Triangles that share an edge with exactly one other form a shell. A shell is turned to the
 /// direction of its larger area, then to a positive volume. A shell inside another of the same
 /// material keeps its direction relative to that one; facing the other way makes it a cavity. Flaps

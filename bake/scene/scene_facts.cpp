@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "bake/scene/texture_footprint.h"
+#include "bake/scene/texture_pyramid.h"
 #include "formats/image/srgb.h"
 
 namespace opaline::bake {

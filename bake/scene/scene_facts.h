@@ -55,7 +55,7 @@ struct MaterialFacts {
 
     /// Of a medium: edges where an odd number of triangles meet.
     std::uint64_t open_edges = 0;
-    /// Of a medium: bound on the area of holes over that of the surface (holes.h).
+    /// Of a medium: bound on the area of holes over that of the surface (coverage.h).
     double holes = 0;
     /// Whether volume and area say how thick it is. A body with large holes may be a sheet: only
     /// rays tell. Small ones change the volume by a few percent, as it is taken from a point of the

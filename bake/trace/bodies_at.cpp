@@ -6,7 +6,7 @@
 #include <array>
 #include <limits>
 
-#include "bake/scene/media_order.h"
+#include "bake/scene/nested_media.h"
 #include "bake/trace/hit_geometry.h"
 
 namespace opaline::bake {

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
 #include "bake/base/context.h"
 #include "bake/receivers/receiver.h"
+#include "bake/scene/scene_facts.h"
+#include "bake/trace/bodies_at.h"
 #include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
@@ -29,5 +32,13 @@ bool is_hidden(const RayScene& rays, const Receiver& receiver);
 std::vector<Receiver> replace_hidden_receivers(const RayScene& rays, const formats::Scene& scene,
                                                std::vector<Receiver> receivers,
                                                const Context& context);
+
+/// Of each vertex of the scene the one at whose place its light is gathered: its own number, but
+/// for vertices of media that lie in or against another body with all their triangles, or that have
+/// no triangle left (cancel_flaps.h). Nobody sees these, but triangles interpolate between them and
+/// others. They take the nearest vertex of their material that is seen, twice as near where it
+/// faces another way. Where there is none they stay.
+std::vector<std::uint32_t> find_stand_ins(const formats::Scene& scene, const SceneFacts& facts,
+                                          const EmbreeScene& triangles, const Context& context);
 
 }  // namespace opaline::bake

@@ -7,7 +7,7 @@
 namespace opaline::bake {
 
 /// The bodies around a point. Where several overlap, the one whose material is the last in their
-/// order (scene/media_order.h) fills the space; a surface of any other is none there. Bodies of one
+/// order (scene/nested_media.h) fills the space; a surface of any other is none there. Bodies of one
 /// material are counted.
 class MediumStack {
   public:

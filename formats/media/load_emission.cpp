@@ -1,15 +1,16 @@
 #include "formats/media/load_emission.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "formats/fill_grid.h"
 #include "formats/gltf/report.h"
-#include "formats/media/black_body.h"
 #include "formats/media/limits.h"
 #include "formats/media/resampler.h"
+#include "formats/spectrum.h"
 #include "formats/vdb/limits.h"
 
 namespace opaline::formats {
@@ -164,6 +165,24 @@ Albedos scatter(const SparseGrid<float>& density, const Resampler& albedo, Albed
 }
 
 }  // namespace
+
+Rgb black_body_radiance(double kelvin) {
+    if (!(kelvin > 0)) return {};
+    constexpr double kStep = 5;                   // [nm]
+    constexpr double kRadiance = 1.191042972e20;  // 2 h c^2 [W m^-2 sr^-1 nm^-1] at 1 nm
+    constexpr double kLumens = 683;               // per watt
+    Xyz sum{};
+    for (double nm = 360; nm <= 830; nm += kStep) {
+        const double power = planck(nm, kelvin);
+        const Xyz response = color_matching(nm);
+        for (std::size_t i = 0; i < 3; ++i) {
+            sum[i] += kLumens * kRadiance * kStep * power * response[i];
+        }
+    }
+    const std::array<double, 3> c = rec709_of_xyz(sum);
+    const auto channel = [](double x) { return static_cast<float>(std::max(0.0, x)); };
+    return {channel(c[0]), channel(c[1]), channel(c[2])};
+}
 
 Status load_emission(const VolumeEntry& entry, const std::filesystem::path& file,
                      const glm::dmat4& density_space, const VdbReadOptions& reader, Volume& volume,

@@ -12,7 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/vdb/check_transform.h"
 #include "formats/vdb/grid_file.h"
 #include "formats/vdb/limits.h"
 #include "formats/vdb/pack_bricks.h"

@@ -9,7 +9,6 @@
 #include <type_traits>
 #include <utility>
 
-#include "formats/vdb/check_transform.h"
 #include "formats/vdb/limits.h"
 
 namespace opaline::formats::vdb {

@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "formats/opal/atomic_file.h"
-#include "formats/vdb/check_transform.h"
+#include "formats/vdb/limits.h"
 
 namespace opaline::formats {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "formats/opal/asset.h"
 #include "runtime/embed_gl/gl_names.h"
-#include "runtime/embed_gl/glossy_light.h"
 #include "runtime/embed_gl/image_textures.h"
 #include "runtime/embed_gl/layer_textures.h"
 #include "runtime/embed_gl/mirrored_light.h"

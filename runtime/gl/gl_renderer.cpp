@@ -11,10 +11,9 @@
 #include "runtime/emitter_light.h"
 #include "runtime/gl/egl_context.h"
 #include "runtime/gl/gl_draw.h"
-#include "runtime/gl/gl_environment.h"
+#include "runtime/gl/gl_scene.h"
 #include "runtime/gl/gl_layer_pass.h"
 #include "runtime/gl/gl_volume_pass.h"
-#include "runtime/gl/gl_volumes.h"
 #include "runtime/picture/software_renderer.h"
 #include "runtime/specular.h"
 

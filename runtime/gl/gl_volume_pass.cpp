@@ -3,12 +3,20 @@
 #include <array>
 #include <string>
 
+#include "runtime/gl/gl_objects.h"
 #include "runtime/picture/volume_pass.h"
+#include "runtime/volumes/relight_volumes.h"
 #include "runtime/volumes/suns.h"
 #include "shader_text.h"
 
 namespace opaline::runtime {
 namespace {
+
+using formats::TermSet;
+
+TermSet of_volumes(TermSet terms) {
+    return terms & (TermSet::volume_single | TermSet::volume_multiple);
+}
 
 // Locations of volumes.frag.glsl.
 enum Uniform : GLint {
@@ -20,6 +28,24 @@ enum Uniform : GLint {
 };
 
 }  // namespace
+
+formats::Status relight_gl_volumes(GlVolumeLight& lit, VolumeTextures& textures,
+                                   const LightVector& light, const EmitterLight& emitters) {
+    if (textures.size() == 0) return formats::ok_status();
+    lit.light = light;
+    lit.emitters.assign(emitters.color.begin(), emitters.color.end());
+    lit.shows_own = emitters.shows_own;
+    lit.terms = TermSet::none;
+    return show_volume_terms(lit, textures, TermSet::all);
+}
+
+formats::Status show_volume_terms(GlVolumeLight& lit, VolumeTextures& textures, TermSet terms) {
+    if (textures.size() == 0 || lit.terms == of_volumes(terms)) return formats::ok_status();
+    lit.terms = of_volumes(terms);
+    if (lit.light.n == 0) return formats::ok_status();  // uploaded without light
+    return as_status(textures.upload(relight_volumes(
+        lit.volumes, lit.light, {.terms = lit.terms, .emitters = {lit.emitters, lit.shows_own}})));
+}
 
 formats::Result<GLuint> make_volume_program(GlNames& names, const opaline_gl_volumes& volumes,
                                             bool layer) {

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "runtime/holes.h"
-#include "runtime/normal_maps/normal_map.h"
 #include "runtime/normal_maps/turned_light.h"
 #include "runtime/parallel.h"
 #include "runtime/picture/layer_pass.h"

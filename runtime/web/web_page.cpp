@@ -9,7 +9,6 @@
 #include "page_text.h"
 #include "runtime/clouds/layer_light.h"
 #include "runtime/gloss.h"
-#include "runtime/gloss_tables.h"
 #include "runtime/picture/layer_pass.h"
 #include "runtime/picture/volume_pass.h"
 #include "runtime/reduce_map.h"

@@ -9,7 +9,6 @@
 
 #include "bake/check/check_model.h"
 #include "bake/check/model_pairs.h"
-#include "bake/check/model_truth.h"
 #include "bake/pipeline/pipeline.h"
 #include "runtime/light_vector.h"
 #include "tests/bench/bench.h"

@@ -19,7 +19,7 @@
 
 #include "bake/check/check_model.h"
 #include "bake/effects/effects.h"
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/scatterers.h"

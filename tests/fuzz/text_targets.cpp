@@ -9,7 +9,6 @@
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
 #include "bake/cli/usage_errors.h"
-#include "bake/cli/view/render_line.h"
 #include "bake/cli/view/view_script.h"
 #include "bake/lab/compare/relight_table.h"
 #include "tests/fuzz/targets.h"

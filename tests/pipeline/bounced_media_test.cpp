@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "bake/check/check_model.h"
-#include "bake/check/model_truth.h"
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/check/model_pairs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "runtime/light_vector.h"
 #include "tests/support/walk_bake.h"
 

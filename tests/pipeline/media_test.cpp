@@ -8,7 +8,7 @@
 #include "bake/effects/single/rules_single.h"
 #include "bake/physics/fresnel.h"
 #include "bake/physics/slab/even_light.h"
-#include "bake/plan/scattered_once.h"
+#include "bake/plan/medium_exitance.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/inspect_scene.h"
 #include "bake/trace/irradiance_transport.h"

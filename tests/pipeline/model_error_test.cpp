@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "bake/check/model_truth.h"
+#include "bake/check/model_pairs.h"
 #include "runtime/light_vector.h"
 #include "tests/support/media_bake.h"
 #include "tests/support/sheets.h"

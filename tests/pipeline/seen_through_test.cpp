@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bake/check/check_model.h"
-#include "bake/check/model_truth.h"
+#include "bake/check/model_pairs.h"
 #include "bake/effects/transmission/rules_transmission.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"

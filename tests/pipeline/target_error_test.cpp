@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "formats/opal/write_opal.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"

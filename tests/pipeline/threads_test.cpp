@@ -8,7 +8,7 @@
 
 #include "bake/check/check_model.h"
 #include "bake/effects/emitters/emitter_knobs.h"
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/effects/volumes/volume_knobs.h"
 #include "formats/opal/atomic_file.h"
 #include "formats/opal/file_bytes.h"

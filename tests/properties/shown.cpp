@@ -9,7 +9,7 @@
 
 #include "bake/base/context.h"
 #include "bake/effects/emitters/emitter_knobs.h"
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/effects/volumes/volume_knobs.h"
 #include "formats/opal/cubemap.h"
 #include "runtime/light_vector.h"

@@ -1,10 +1,11 @@
-#include "runtime/dot.h"
-
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "runtime/dot.h"
+#include "runtime/vector_units.h"
 #include "tests/runtime/row_test_support.h"
 
 namespace opaline::runtime {
@@ -84,5 +85,20 @@ INSTANTIATE_TEST_SUITE_P(Widths, DotRows,
                                     std::to_string(width.param.bands);
                          });
 
+TEST(VectorUnits, AreThoseThatTheCompilerFinds) {
+    const VectorUnits found = find_vector_units();
+#if defined(__x86_64__)
+    __builtin_cpu_init();
+    EXPECT_EQ(found.avx2, __builtin_cpu_supports("avx2") != 0);
+    EXPECT_EQ(found.fma, __builtin_cpu_supports("fma") != 0);
+    EXPECT_EQ(found.avx512, __builtin_cpu_supports("avx512f") != 0 &&
+                                __builtin_cpu_supports("avx512bw") != 0 &&
+                                __builtin_cpu_supports("avx512vl") != 0);
+#else
+    EXPECT_FALSE(found.avx2 || found.fma || found.avx512);
+#endif
+}
+
 }  // namespace
+
 }  // namespace opaline::runtime

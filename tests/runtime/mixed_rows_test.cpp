@@ -1,7 +1,7 @@
 // Vertices without rows of their own show the weighted mean of what others do.
 #include <gtest/gtest.h>
 
-#include "tests/formats/opal/mix_fixture.h"
+#include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/light_test_support.h"
 #include "tests/runtime/shade_test_support.h"
 

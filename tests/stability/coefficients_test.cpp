@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
 #include "bake/physics/dipole.h"
 #include "tests/support/effects.h"
 #include "tests/support/media_bake.h"

@@ -6,11 +6,9 @@
 
 #include "bake/physics/path_differentials/axis_frame.h"
 #include "bake/physics/path_differentials/bounded_change.h"
-#include "bake/physics/path_differentials/disk_map.h"
 #include "bake/physics/path_differentials/footprint.h"
 #include "bake/physics/path_differentials/lobe.h"
 #include "bake/physics/path_differentials/path_differential.h"
-#include "bake/physics/path_differentials/smooth_event.h"
 #include "bake/physics/path_differentials/surface_shape.h"
 #include "tests/stability/naive_forms.h"
 #include "tests/stability/stability_row.h"

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/cli/view/orbit_camera.h"
+#include "bake/cli/view/view_state.h"
 #include "bake/cli/view/view_script.h"
 #include "formats/opal/terms.h"
 

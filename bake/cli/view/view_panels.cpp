@@ -10,7 +10,7 @@
 #include <numbers>
 
 #include "bake/cli/messages.h"
-#include "bake/cli/view/orbit_camera.h"
+#include "bake/cli/view/view_state.h"
 
 namespace opaline::cli {
 namespace {

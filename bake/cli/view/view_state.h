@@ -29,7 +29,7 @@ struct EmitterColor {
 };
 
 /// What `opaline view` shows: everything that its user or a script may change, and nothing else.
-/// Every state is a picture that `opaline render` can make (render_line.h), two with `other`.
+/// Every state is a picture that `opaline render` can make (view_script.h), two with `other`.
 struct ViewState {
     std::string file, other;  ///< `.opal` files; no `other`: one picture
     std::string light = "studio";
@@ -38,7 +38,7 @@ struct ViewState {
     float fov = 32;                            ///< vertical angle of view [degrees], in (0, 180)
     double rotate_light = 0;                   ///< about +Y, in [0, 360) [degrees]
     double time = 0;                           ///< of cloud layers [s]
-    /// [EV], in [-64, 64]; nothing: chosen from the picture (auto_exposure.h).
+    /// [EV], in [-64, 64]; nothing: chosen from the picture (tone_map.h).
     std::optional<float> exposure;
     runtime::ToneMap tone_map = runtime::ToneMap::neutral;
     formats::TermSet terms = formats::TermSet::baked;
@@ -75,5 +75,34 @@ void toggle_term(ViewState& state, formats::TermSet term);
 /// Another file in place of the first one, which is framed anew and shown as it was baked: with all
 /// coefficients, terms and emitters.
 void show_file(ViewState& state, const std::string& path);
+
+/// A place on the picture: x to the right, y up, 0 in its middle; the shorter side spans [-1, 1].
+struct BallPoint {
+    double x = 0, y = 0;
+};
+
+/// Where a pixel lies so, from the top left corner.
+BallPoint ball_point(double column, double row, double width, double height);
+
+/// The eye around the target, with a level horizon: to the right and up, in degrees. The elevation
+/// stays within 89.9 degrees of the horizon.
+Viewpoint orbit_level(const Viewpoint& from, double azimuth, double elevation);
+
+/// Arcball: the scene turns about the target so that what lies at `begin` on a ball comes to `end`.
+/// Within sqrt(1/2) of the middle the ball is the unit sphere, outside a hyperbola z = 1 / (2 r),
+/// which continues it smoothly (G. Bell; K. Shoemake, "ARCBALL", Graphics Interface 1992). The
+/// horizon does not stay level.
+Viewpoint turn_ball(const Viewpoint& from, BallPoint begin, BallPoint end);
+
+/// Moves eye and target alike, so that what lies in the plane of the target moves by these shares
+/// of the picture's height, to the right and up.
+Viewpoint pan(const Viewpoint& from, float fov, double right, double up);
+
+/// The eye's distance to the target times `factor`, which is above 0. Not below 1e-5 of the
+/// target's distance from the origin.
+Viewpoint zoom(const Viewpoint& from, double factor);
+
+/// The same eye and target with +Y up.
+Viewpoint level(const Viewpoint& from);
 
 }  // namespace opaline::cli

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bake/exchange/other_light.h"
-#include "bake/lights/true_reflection.h"
+#include "bake/lights/true_irradiance.h"
 #include "bake/physics/slab/even_light.h"
 #include "bake/plan/stage_work.h"
 #include "bake/receivers/other_side.h"

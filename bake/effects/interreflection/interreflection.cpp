@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "bake/effects/interreflection/interreflection_knobs.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/scatterers.h"

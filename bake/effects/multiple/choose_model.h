@@ -2,11 +2,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_stage.h"
+#include "bake/effects/multiple/walks/walk.h"
 #include "bake/plan/effect.h"
+#include "formats/opal/result.h"
 
 namespace opaline::bake {
 
@@ -63,5 +66,11 @@ PlanEntry decide_model(const PlanInput& input);
 
 /// The decision once the choice is made.
 void describe_choice(const ModelChoice& choice, PlanEntry& entry);
+
+/// A warning where a thousandth or more of the light of a material's walks ends before it leaves
+/// the surface: how much, why, and how it is corrected (WalkCounts::correction). `material`: its
+/// name.
+std::optional<formats::Diagnostic> describe_unfinished(const std::string& material,
+                                                       const WalkCounts& counts);
 
 }  // namespace opaline::bake

@@ -7,7 +7,10 @@
 #include <vector>
 
 #include "bake/effects/multiple/cluster_tree.h"
-#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
+#include "bake/effects/multiple/multiple_stage.h"
+#include "bake/plan/dense_rows.h"
+#include "bake/plan/row_layout.h"
 
 namespace opaline::bake {
 
@@ -39,5 +42,17 @@ void accumulate(const ClusterTree& tree, std::span<const ClusterWeight> weights,
 /// The same for the first band only, 6 n n values.
 void accumulate_grey(const ClusterTree& tree, std::span<const ClusterWeight> weights,
                      std::span<float> sums);
+
+/// T_d of the stage's dipole at a point, times a factor per band: four floats per texel (one with
+/// one band), overwritten. Precondition: the stage has a tree.
+void gather_dipole_row(const MultipleStage& stage, glm::vec3 position, glm::vec3 normal,
+                       double tolerance, glm::vec3 factor, std::uint32_t bands,
+                       std::span<float> rgbx);
+
+/// T_0 += T_d / (pi c_exit h_0). Where the layout has rows by view, adds the walked light to them
+/// as harmonics of the view w'. `tolerance` of the gather; `layout` and `row` of the stage's
+/// material.
+void add_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
+                       const RowLayout& layout, const DenseRow& row);
 
 }  // namespace opaline::bake

@@ -9,19 +9,19 @@
 #include <vector>
 
 #include "bake/effects/multiple/choose_model.h"
+#include "bake/effects/multiple/gather_multiple.h"
 #include "bake/effects/multiple/multiple_costs.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/multiple_stage.h"
 #include "bake/effects/multiple/rule_multiple.h"
 #include "bake/effects/multiple/thin_parts.h"
 #include "bake/effects/multiple/true_multiple.h"
-#include "bake/effects/multiple/unfinished_walks.h"
 #include "bake/effects/multiple/view_terms.h"
 #include "bake/effects/multiple/walks/true_walks.h"
 #include "bake/exchange/other_light.h"
 #include "bake/lights/true_irradiance.h"
 #include "bake/physics/fresnel.h"
-#include "bake/scene/even_media.h"
+#include "bake/scene/medium_field.h"
 
 namespace opaline::bake {
 namespace {

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "bake/effects/multiple/choose_model.h"
-#include "bake/effects/multiple/gather_profile.h"
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "bake/effects/multiple/walks/walk_stage.h"

@@ -6,11 +6,9 @@
 
 #include "bake/base/context.h"
 #include "bake/effects/multiple/cluster_tree.h"
-#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/walks/walk_stage.h"
-#include "bake/plan/dense_rows.h"
-#include "bake/plan/row_layout.h"
 #include "bake/trace/ray_scene.h"
 #include "formats/scene.h"
 
@@ -66,17 +64,5 @@ MultipleStage prepare_multiple(const formats::Scene& scene, const RayScene& rays
                                const RayScene& bodies, std::uint32_t material,
                                const MediumProfile& medium, const MultipleOptions& options,
                                const Context& context);
-
-/// T_d, the row of multiple scattering at a point: four floats per texel (one with one band). And
-/// how it changes with the view, as walks found it: rows by view (walks/view_fit.h), none, 3 or 8,
-/// one after the other. Both overwritten. Precondition: walks did not begin inside.
-void gather_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
-                          std::uint32_t bands, std::span<float> rgbx, std::span<float> views);
-
-/// T_0 += T_d / (pi c_exit h_0). Where the layout has rows by view, adds the walked light to them
-/// as harmonics of the view w'. `tolerance` of the gather; `layout` and `row` of the stage's
-/// material.
-void add_multiple_rows(const MultipleStage& stage, const BodyPoint& point, double tolerance,
-                       const RowLayout& layout, const DenseRow& row);
 
 }  // namespace opaline::bake

@@ -57,4 +57,10 @@ PlanEntry decide_multiple(const PlanInput& input);
 double small_body_bound(const formats::Medium& medium, const Band& band, double diagonal,
                         double area);
 
+/// One rule: whether light spreads along the surface of a medium, or leaves where it entered
+/// (README.md, "Bounds"). The bound is the sum of three errors of a half space lit like the vertex:
+/// irradiance that varies over four mean edges and is blurred by the profile, light that passes
+/// through the body, and facets tilted against the smooth surface.
+std::span<const DecisionRule> spread_rules();
+
 }  // namespace opaline::bake

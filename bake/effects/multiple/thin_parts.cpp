@@ -8,7 +8,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
-#include "bake/lights/draw_receivers.h"
+#include "bake/lights/test_lights.h"
 #include "bake/physics/fresnel.h"
 #include "bake/plan/plan_input.h"
 #include "bake/receivers/used_vertices.h"

@@ -5,7 +5,7 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
 #include "bake/lights/luminance.h"
 #include "bake/lights/true_irradiance.h"
 #include "bake/receivers/surface_points.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "bake/exchange/other_light.h"
-#include "bake/lights/true_reflection.h"
+#include "bake/lights/true_irradiance.h"
 #include "bake/receivers/other_side.h"
 #include "bake/scene/coverage.h"
 #include "bake/trace/irradiance_transport.h"

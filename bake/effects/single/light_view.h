@@ -1,8 +1,7 @@
 #pragma once
 
-#include <glm/glm.hpp>
-
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <vector>
 
 #include "bake/base/context.h"
@@ -10,6 +9,14 @@
 #include "formats/scene.h"
 
 namespace opaline::bake {
+
+/// Marks the triangles of a material that lie inside another shell of its medium and so are no
+/// boundary (README.md, "Signed depth"); in the order of the scene's primitives. Tested at four
+/// points of each triangle, along three rays each. A triangle that is only partly inside, or on
+/// which the rays disagree (near holes), counts as boundary. 1: inside. All zero if the context is
+/// cancelled.
+std::vector<std::uint8_t> find_inner_triangles(const formats::Scene& scene, const RayScene& rays,
+                                               std::uint32_t material, const Context& context);
 
 /// The boundary of a medium and everything else in a scene as one list of triangles, the boundary
 /// first. Triangles within the medium are left out.

@@ -8,7 +8,7 @@
 #include "bake/effects/single/single_knobs.h"
 #include "bake/physics/phase.h"
 #include "bake/physics/phase_series.h"
-#include "bake/plan/scattered_once.h"
+#include "bake/plan/medium_exitance.h"
 
 namespace opaline::bake {
 namespace {

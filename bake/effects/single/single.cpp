@@ -15,7 +15,7 @@
 #include "bake/physics/entry.h"
 #include "bake/physics/path_quadrature.h"
 #include "bake/physics/phase_series.h"
-#include "bake/plan/scattered_once.h"
+#include "bake/plan/medium_exitance.h"
 #include "bake/plan/stage_work.h"
 #include "bake/receivers/body_points.h"
 #include "formats/opal/cubemap.h"

@@ -6,7 +6,7 @@
 
 #include "bake/physics/entry.h"
 #include "bake/physics/fresnel.h"
-#include "bake/scene/media_order.h"
+#include "bake/scene/nested_media.h"
 #include "bake/trace/body.h"
 #include "bake/trace/packet_lane.h"
 

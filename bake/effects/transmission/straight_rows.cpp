@@ -8,7 +8,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/effects/transmission/view_fit.h"
-#include "bake/exchange/seen_lamps.h"
+#include "bake/exchange/seen_light.h"
 #include "bake/physics/fresnel.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/haar.h"

@@ -13,15 +13,10 @@
 namespace opaline::bake {
 namespace {
 
-// Bands [first, end) that follow the extinction of `first`.
-struct Bands {
-    std::size_t first = 0, end = 3;
-};
-
 // Adds to `sum`, one for each grid, the light that arrives at a point from a direction: a walk
 // against the light gathers the emission along each of its flights. The track length is an unbiased
 // estimate, also where emission has no density.
-std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::vec3 at,
+std::uint64_t follow_glow(const GlowWalkSpace& walk, const WalkTrack& bands, glm::vec3 at,
                           glm::vec3 direction, FlightRandom& random, std::span<glm::vec3> sum) {
     std::uint64_t traced = 0;
     std::array<float, 3> weight{};
@@ -53,31 +48,22 @@ std::uint64_t follow_glow(const GlowWalkSpace& walk, const Bands& bands, glm::ve
 std::uint64_t gather_glow(const GlowWalkSpace& walk, const GlowReceiver& receiver,
                           std::span<glm::vec3> out) {
     std::ranges::fill(out, glm::vec3(0));
-    std::vector<Bands> tracks{{0, 3}};
-    if (!walk.space.is_grey) {
-        tracks = {{0, 1}, {1, 2}, {2, 3}};
-    }
     std::vector<glm::vec3> sum(walk.glow.size());
     std::array<float, formats::kMaxHarmonics> view{};
-    std::uint64_t traced = 0;
-    FlightRandom shift(walk.seed, RandomStage::volume_glow, receiver.node);
-    const float u = shift(), v = shift();
-    for (std::uint32_t i = 0; i < receiver.walks; ++i) {
-        const glm::vec3 direction = even_direction(i, receiver.walks, u, v);
-        std::ranges::fill(sum, glm::vec3(0));
-        for (const Bands& bands : tracks) {
-            FlightRandom random(walk.seed, RandomStage::volume_glow,
-                                (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
-            traced += follow_glow(walk, bands, receiver.position, direction, random, sum);
-        }
-        formats::eval_spherical_harmonics({direction.x, direction.y, direction.z},
-                                          std::span(view).first(receiver.terms));
-        for (std::size_t grid = 0; grid < sum.size(); ++grid) {
-            for (std::uint32_t k = 0; k < receiver.terms; ++k) {
-                out[grid * receiver.terms + k] += view[k] * sum[grid];
+    const std::uint64_t traced = walk_from_node(
+        walk.space, {walk.seed, RandomStage::volume_glow, receiver.node, receiver.walks}, sum,
+        [&](const WalkTrack& bands, glm::vec3 direction, FlightRandom& random) {
+            return follow_glow(walk, bands, receiver.position, direction, random, sum);
+        },
+        [&](std::uint32_t, glm::vec3 direction) {
+            formats::eval_spherical_harmonics({direction.x, direction.y, direction.z},
+                                              std::span(view).first(receiver.terms));
+            for (std::size_t grid = 0; grid < sum.size(); ++grid) {
+                for (std::uint32_t k = 0; k < receiver.terms; ++k) {
+                    out[grid * receiver.terms + k] += view[k] * sum[grid];
+                }
             }
-        }
-    }
+        });
     const ScaledPhase& phase = walk.space.volumes[receiver.volume].phase;
     constexpr float kSphere = 4 * std::numbers::pi_v<float>;
     for (std::uint32_t k = 0; k < receiver.terms; ++k) {

@@ -11,18 +11,13 @@
 #include "bake/effects/volumes/walk_parts.h"
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/lamps/spread_points.h"
-#include "bake/physics/path_differentials/area_sample.h"
+#include "bake/physics/path_differentials/axis_frame.h"
 #include "bake/scene/punctual_light.h"
 #include "bake/trace/packet_lane.h"
 #include "formats/opal/spherical_harmonics.h"
 
 namespace opaline::bake {
 namespace {
-
-// Bands [first, end) that follow the extinction of `first`.
-struct LampBands {
-    std::size_t first = 0, end = 3;
-};
 
 // Light of a lamp that arrives at a point, if nothing is between.
 struct LampRay {
@@ -113,7 +108,7 @@ struct LampWalk {
 
 // A surface reflects or lets through what lamps send to it, one of both by chance, and the walk
 // goes on from it. False: it ends there.
-bool turn_at_surface(const LampWalkSpace& walk, const LampBands& bands, const Arrival& met,
+bool turn_at_surface(const LampWalkSpace& walk, const WalkTrack& bands, const Arrival& met,
                      LampWalk& state, FlightRandom& random, std::span<glm::vec3> sum,
                      std::uint64_t& traced) {
     const BounceColor color = bounce_color(walk.scene, met.side, glm::vec3(met.weights));
@@ -145,7 +140,7 @@ bool turn_at_surface(const LampWalkSpace& walk, const LampBands& bands, const Ar
 
 // Adds to `sum`, one for each lamp, the light that arrives at a point from a direction: a walk
 // against the light, which asks for each lamp wherever it is scattered.
-std::uint64_t follow_to_lamps(const LampWalkSpace& walk, const LampBands& bands, LampWalk state,
+std::uint64_t follow_to_lamps(const LampWalkSpace& walk, const WalkTrack& bands, LampWalk state,
                               float blur, FlightRandom& random, std::span<glm::vec3> sum) {
     std::uint64_t traced = 0;
     for (std::size_t band = bands.first; band < bands.end; ++band) {
@@ -268,34 +263,25 @@ std::uint64_t gather_lamps(const LampWalkSpace& walk, const LampReceiver& receiv
     std::ranges::fill(out.straight, glm::vec3(0));
     std::ranges::fill(out.scattered, glm::vec3(0));
     std::ranges::fill(out.odd, glm::vec3(0));
-    std::vector<LampBands> tracks{{0, 3}};
-    if (!walk.space.is_grey) {
-        tracks = {{0, 1}, {1, 2}, {2, 3}};
-    }
     std::vector<glm::vec3> sum(walk.lamps.size());
     std::array<float, formats::kMaxHarmonics> view{};
-    std::uint64_t traced = 0;
-    FlightRandom shift(walk.seed, RandomStage::volume_glow, receiver.node);
-    const float u = shift(), v = shift();
-    for (std::uint32_t i = 0; i < receiver.walks; ++i) {
-        const glm::vec3 direction = even_direction(i, receiver.walks, u, v);
-        std::ranges::fill(sum, glm::vec3(0));
-        for (const LampBands& bands : tracks) {
-            FlightRandom random(walk.seed, RandomStage::volume_glow,
-                                (std::uint64_t{i} + 1) << 40 | std::uint64_t{receiver.node});
-            traced += follow_to_lamps(walk, bands, {receiver.position, direction, {}}, kBlur * size,
-                                      random, sum);
-        }
-        formats::eval_spherical_harmonics({direction.x, direction.y, direction.z},
-                                          std::span(view).first(receiver.terms));
-        for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
-            for (std::uint32_t k = 0; k < receiver.terms; ++k) {
-                const glm::vec3 light = view[k] * sum[lamp];
-                out.scattered[lamp * receiver.terms + k] += light;
-                if (i % 2 == 1) out.odd[lamp * receiver.terms + k] += light;
+    std::uint64_t traced = walk_from_node(
+        walk.space, {walk.seed, RandomStage::volume_glow, receiver.node, receiver.walks}, sum,
+        [&](const WalkTrack& bands, glm::vec3 direction, FlightRandom& random) {
+            return follow_to_lamps(walk, bands, {receiver.position, direction, {}}, kBlur * size,
+                                   random, sum);
+        },
+        [&](std::uint32_t i, glm::vec3 direction) {
+            formats::eval_spherical_harmonics({direction.x, direction.y, direction.z},
+                                              std::span(view).first(receiver.terms));
+            for (std::size_t lamp = 0; lamp < sum.size(); ++lamp) {
+                for (std::uint32_t k = 0; k < receiver.terms; ++k) {
+                    const glm::vec3 light = view[k] * sum[lamp];
+                    out.scattered[lamp * receiver.terms + k] += light;
+                    if (i % 2 == 1) out.odd[lamp * receiver.terms + k] += light;
+                }
             }
-        }
-    }
+        });
     const auto share_of = [](std::uint32_t walks) {
         return 4 * std::numbers::pi_v<float> / static_cast<float>(std::max(walks, 1u));
     };

@@ -10,7 +10,7 @@
 #include "bake/base/rng.h"
 #include "bake/effects/volumes/bake_volumes.h"
 #include "bake/effects/volumes/scattering_points.h"
-#include "bake/physics/path_differentials/disk_map.h"
+#include "bake/physics/path_differentials/lobe.h"
 #include "bake/receivers/receiver.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/detail_codes.h"

@@ -8,10 +8,9 @@
 
 #include "bake/base/rng.h"
 #include "bake/effects/volumes/walk_parts.h"
-#include "bake/physics/path_integral/path_estimate.h"
 #include "bake/physics/path_integral/quasi_path.h"
 #include "bake/physics/path_integral/turn.h"
-#include "bake/physics/poisson_phase.h"
+#include "bake/physics/phase.h"
 #include "formats/opal/spherical_harmonics.h"
 #include "formats/opal/volumes.h"
 

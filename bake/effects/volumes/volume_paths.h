@@ -9,7 +9,6 @@
 
 #include "bake/effects/volumes/volume_walks.h"
 #include "bake/physics/path_integral/grid_medium.h"
-#include "bake/physics/path_integral/volume_box.h"
 #include "bake/plan/knobs.h"
 #include "bake/trace/density/density_space.h"
 

@@ -12,7 +12,7 @@
 #include "bake/effects/volumes/walk_nodes.h"
 #include "bake/effects/volumes/walk_parts.h"
 #include "bake/exchange/bounce_light.h"
-#include "bake/physics/path_integral/path_estimate.h"
+#include "bake/physics/path_integral/quasi_path.h"
 #include "bake/trace/density/density_space.h"
 #include "formats/opal/cubemap.h"
 #include "formats/opal/phase_table.h"

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <vector>
 
 #include "bake/base/rng.h"
 #include "bake/trace/density/density_space.h"
@@ -54,6 +56,47 @@ class FlightRandom {
 
 /// Unit direction i of `count` that cover the sphere evenly, turned by two numbers in [0, 1).
 glm::vec3 even_direction(std::uint32_t i, std::uint32_t count, float u, float v);
+
+/// Bands [first, end) that follow the extinction of `first`.
+struct WalkTrack {
+    std::size_t first = 0, end = 3;
+};
+
+/// Walks from a node of a volume.
+struct NodeWalks {
+    std::uint64_t seed = 0;
+    RandomStage stage{};
+    std::size_t node = 0;     ///< the random numbers depend on it
+    std::uint32_t count = 0;  ///< of walks
+    std::size_t bands = 3;    ///< of light; with one extinction a walk follows all of them
+};
+
+/// Follows walks that leave a node in directions which cover the sphere evenly. Of each walk, sets
+/// `sum` to zero, calls follow(track, direction, random), which adds to it and returns the rays
+/// traced, once for every track of `space`, and take(walk, direction). Tracks of a walk share its
+/// numbers, so that its noise has no colour. Returns the rays traced.
+template <class Light, class Follow, class Take>
+std::uint64_t walk_from_node(const DensitySpace& space, const NodeWalks& walks,
+                             std::vector<Light>& sum, Follow&& follow, Take&& take) {
+    std::vector<WalkTrack> tracks{{0, walks.bands}};
+    if (!space.is_grey) {
+        tracks = {{0, 1}, {1, 2}, {2, 3}};
+    }
+    std::uint64_t traced = 0;
+    FlightRandom shift(walks.seed, walks.stage, walks.node);
+    const float u = shift(), v = shift();
+    for (std::uint32_t i = 0; i < walks.count; ++i) {
+        const glm::vec3 direction = even_direction(i, walks.count, u, v);
+        std::ranges::fill(sum, Light(0));
+        for (const WalkTrack& track : tracks) {
+            FlightRandom random(walks.seed, walks.stage,
+                                (std::uint64_t{i} + 1) << 40 | std::uint64_t{walks.node});
+            traced += follow(track, direction, random);
+        }
+        take(i, direction);
+    }
+    return traced;
+}
 
 /// The first surface that a walk meets.
 struct MetSurface {

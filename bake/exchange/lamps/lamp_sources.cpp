@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "bake/exchange/lamps/point_box.h"
-#include "bake/scene/emission.h"
+#include "bake/scene/base_color.h"
 #include "bake/scene/punctual_light.h"
-#include "bake/scene/texture_footprint.h"
+#include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
 namespace {

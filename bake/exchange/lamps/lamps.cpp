@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "bake/scene/emission.h"
+#include "bake/scene/base_color.h"
 #include "formats/opal/emitters.h"
 
 namespace opaline::bake {

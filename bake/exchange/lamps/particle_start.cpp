@@ -9,7 +9,7 @@
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/lamps/spread_points.h"
 #include "bake/exchange/lamps/trace_particles.h"
-#include "bake/physics/path_differentials/area_sample.h"
+#include "bake/physics/path_differentials/axis_frame.h"
 #include "bake/scene/punctual_light.h"
 
 namespace opaline::bake {

@@ -9,7 +9,7 @@
 #include "bake/exchange/lamps/glow_light.h"
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/lamps/spread_points.h"
-#include "bake/physics/path_differentials/area_sample.h"
+#include "bake/physics/path_differentials/axis_frame.h"
 #include "bake/scene/punctual_light.h"
 #include "bake/trace/packet_lane.h"
 

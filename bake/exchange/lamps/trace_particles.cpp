@@ -12,7 +12,7 @@
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/lamps/particle_start.h"
 #include "bake/physics/path_differentials/path_differential.h"
-#include "bake/scene/texture_footprint.h"
+#include "bake/scene/texture_pyramid.h"
 
 namespace opaline::bake {
 namespace {

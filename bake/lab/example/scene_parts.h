@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bake/lab/example/field.h"
+#include "bake/lab/example/solid_mesh.h"
 #include "bake/lab/example/triangle_mesh.h"
 #include "bake/lab/example/write_gltf.h"
 #include "formats/image/image.h"

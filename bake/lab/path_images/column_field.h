@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "bake/base/context.h"
-#include "bake/physics/path_integral/volume_box.h"
+#include "bake/physics/path_integral/grid_medium.h"
 #include "bake/reference/hit_scene.h"
 #include "bake/reference/volume_space.h"
 

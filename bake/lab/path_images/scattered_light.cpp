@@ -6,7 +6,7 @@
 
 #include "bake/base/ordered_parallel.h"
 #include "bake/physics/path_integral/least_attenuation.h"
-#include "bake/physics/path_integral/path_estimate.h"
+#include "bake/physics/path_integral/quasi_path.h"
 
 namespace opaline::bake {
 namespace {

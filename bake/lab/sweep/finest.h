@@ -1,11 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bake/check/model_pairs.h"
+#include "bake/lab/sweep/reference_ladder.h"
 #include "bake/lab/sweep/run_sweep.h"
 
 namespace opaline::bake {
@@ -21,5 +24,22 @@ std::size_t find_finest(std::span<const PointRecord> points, std::string_view ch
 void compare_with_finest(SweepResult& result, const EffectTable& effects,
                          const formats::Scene& scene, std::span<const std::uint32_t> probes,
                          std::span<const std::string> lights);
+
+/// What surfaces' and volumes' bakes are compared with, as far as there was time for it.
+struct SweepTruths {
+    std::optional<ReferenceLadder> reference;
+    std::vector<LightCheck> traced;  ///< that total errors are against
+    struct LeftOut {
+        std::string name, reason;
+    };
+    std::vector<LeftOut> left_out;
+};
+
+/// `options`: of the path tracing, but for its amount. Each of both takes about `seconds`, and is
+/// stopped after half of the `left` seconds that are left by then. A truth that the context stops
+/// is left out as well. Errors: resource.
+formats::Result<SweepTruths> trace_truths(const formats::Scene& scene, const ModelProbes& probes,
+                                          const ModelCheckOptions& options, double seconds,
+                                          double left, const Context& context);
 
 }  // namespace opaline::bake

@@ -6,12 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "formats/image/png.h"
 #include "runtime/picture/tone_map.h"
+#include "runtime/web/data_script.h"
 
 namespace opaline::bake {
 namespace {
@@ -23,7 +25,8 @@ using Json = nlohmann::ordered_json;
 formats::Result<std::string> data_uri(const formats::Image8& image) {
     const auto png = formats::encode_png(image, "report.html");
     if (!png) return png.error();
-    return "data:image/png;base64," + encode_base64(*png);
+    return "data:image/png;base64," +
+           runtime::base64_of(std::as_bytes(std::span<const char>(*png)));
 }
 
 formats::Result<std::string> photograph(const Picture& picture) {
@@ -83,24 +86,6 @@ std::string json_for_html(const Json& json) {
                            : std::string(1, c);
     }
     return safe;
-}
-
-std::string encode_base64(std::string_view bytes) {
-    constexpr std::string_view kDigits =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    text.reserve((bytes.size() + 2) / 3 * 4);
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t group = 0;
-        for (std::size_t k = 0; k < 3; ++k) {
-            const auto byte = i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u;
-            group = group << 8 | byte;
-        }
-        for (std::size_t k = 0; k < 4; ++k) {
-            text += i + k > bytes.size() ? '=' : kDigits[group >> (18 - 6 * k) & 63];
-        }
-    }
-    return text;
 }
 
 formats::Result<std::string> make_report_page(const SweepResult& result,

@@ -29,9 +29,6 @@ formats::Image8 draw_difference(const runtime::Picture& picture, const runtime::
 /// the scene has.
 std::string json_for_html(const nlohmann::ordered_json& json);
 
-/// RFC 4648, with padding.
-std::string encode_base64(std::string_view bytes);
-
 /// The whole page: template, style, script, plotting library, data (`json`: make_sweep_json) and
 /// pictures in one text that needs no network. Errors: resource (a picture cannot be encoded).
 formats::Result<std::string> make_report_page(const SweepResult& result,

@@ -9,11 +9,10 @@
 
 #include "bake/base/context.h"
 #include "bake/check/measure_error.h"
-#include "bake/check/model_truth.h"
+#include "bake/check/model_pairs.h"
 #include "bake/effects/layers/layer_error.h"
 #include "bake/lab/sweep/ladders.h"
 #include "bake/lab/sweep/probes.h"
-#include "bake/lab/sweep/sweep_volumes.h"
 #include "bake/pipeline/pipeline.h"
 #include "formats/opal/clouds.h"
 #include "formats/opal/environment.h"

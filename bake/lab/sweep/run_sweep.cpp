@@ -12,11 +12,10 @@
 
 #include "bake/base/interrupted.h"
 #include "bake/base/ordered_parallel.h"
+#include "bake/base/stage_log.h"
 #include "bake/effects/volumes/plan_volumes.h"
 #include "bake/lab/sweep/finest.h"
 #include "bake/lab/sweep/run_point.h"
-#include "bake/lab/sweep/time_limit.h"
-#include "bake/lab/sweep/trace_truths.h"
 #include "bake/lights/builtin_environment.h"
 #include "bake/pipeline/cost_model.h"
 #include "bake/pipeline/plan_scene.h"
@@ -194,6 +193,19 @@ formats::Status bake_truth(Sweep& sweep, std::vector<SweepPoint>& points) {
 }
 
 }  // namespace
+
+TimeLimit::TimeLimit(double seconds, const std::atomic<bool>* outer)
+    : watch_([this, seconds, outer, start = Clock::now()](const std::stop_token& stop) {
+          constexpr std::chrono::milliseconds kLook{10};
+          std::unique_lock lock(mutex_);
+          while (!stop.stop_requested()) {
+              if (seconds_since(start) >= seconds || (outer != nullptr && outer->load())) {
+                  over_.store(true);
+                  return;
+              }
+              wake_.wait_for(lock, stop, kLook, [] { return false; });
+          }
+      }) {}
 
 formats::Result<SweepResult> run_sweep(const EffectTable& effects, const formats::Scene& scene,
                                        const SweepOptions& options, const Context& outer,

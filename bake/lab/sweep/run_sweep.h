@@ -1,15 +1,35 @@
 #pragma once
 
+#include <atomic>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "bake/lab/sweep/reference_ladder.h"
 #include "bake/lab/sweep/run_point.h"
-#include "bake/plan/stage_rates.h"
+#include "bake/plan/stage_work.h"
 
 namespace opaline::bake {
+
+/// A flag for Context::cancel that is set once so many seconds are over, or once `outer`, which may
+/// be null, is set.
+class TimeLimit {
+  public:
+    TimeLimit(double seconds, const std::atomic<bool>* outer);
+
+    const std::atomic<bool>* flag() const { return &over_; }
+
+  private:
+    std::atomic<bool> over_ = false;
+    std::mutex mutex_;
+    std::condition_variable_any wake_;
+    std::jthread watch_;  // last: it reads the others
+};
 
 struct SweepOptions {
     BakeOptions bake;           ///< effects, seed and threads; each point sets the knobs itself

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "bake/physics/gauss_legendre.h"
-#include "bake/physics/poisson_phase.h"
+#include "bake/physics/phase.h"
 
 namespace opaline::bake {
 namespace {

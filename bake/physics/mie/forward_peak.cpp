@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include "bake/physics/poisson_phase.h"
+#include "bake/physics/phase.h"
 
 namespace opaline::bake {
 namespace {

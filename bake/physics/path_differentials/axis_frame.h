@@ -1,9 +1,33 @@
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 
 namespace opaline::bake {
+
+/// A point of a surface, and how it moves with u and v.
+struct AreaSample {
+    glm::dvec3 P{0};
+    glm::dvec3 dP_du{0}, dP_dv{0};  ///< [m]; |dP_du x dP_dv| is the area
+};
+
+/// A + u e1 + v e2: a rectangle, or any parallelogram.
+inline AreaSample sample_parallelogram(const glm::dvec3& A, const glm::dvec3& e1,
+                                       const glm::dvec3& e2, double u, double v) {
+    return {A + u * e1 + v * e2, e1, e2};
+}
+
+/// Uniform in a triangle: the square is folded along its diagonal. Columns are constant on either
+/// side of it. u, v in [0, 1].
+inline AreaSample sample_triangle_folded(const std::array<glm::dvec3, 3>& corners, double u,
+                                         double v) {
+    const glm::dvec3 e1 = corners[1] - corners[0], e2 = corners[2] - corners[0];
+    if (v > u) {
+        return {corners[0] + u / 2 * e1 + (v - u / 2) * e2, (e1 - e2) / 2.0, e2};
+    }
+    return {corners[0] + (u - v / 2) * e1 + v / 2 * e2, e1, (e2 - e1) / 2.0};
+}
 
 /// Columns T, B, n of a right-handed orthonormal frame around a unit vector [Duff2017]: `Frame` of
 /// bake/base in double precision, in which derivatives are told apart.

@@ -15,6 +15,19 @@ glm::dvec3 across(const glm::dvec3& direction, const glm::dvec3& change) {
 
 }  // namespace
 
+Mirror make_mirror(const glm::dvec3& D, const glm::dvec3& N) {
+    const double k = glm::dot(D, N);
+    return {D, N, k, D - 2 * k * N};
+}
+
+std::optional<Refraction> make_refraction(const glm::dvec3& D, const glm::dvec3& N, double eta) {
+    const Mirror mirror = make_mirror(D, N);
+    const double square = 1 - eta * eta * (1 - mirror.k * mirror.k);
+    if (!(square > 0)) return std::nullopt;
+    const double c_t = std::sqrt(square);
+    return Refraction{mirror, eta, c_t, eta * D - (eta * mirror.k + c_t) * N};
+}
+
 glm::dvec3 bounded_transfer(const glm::dvec3& D, const glm::dvec3& N_g, double t,
                             const glm::dvec3& dP, const glm::dvec3& dD) {
     const glm::dvec3 w = dP + t * dD;

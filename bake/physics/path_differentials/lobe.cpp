@@ -2,9 +2,15 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace opaline::bake {
 namespace {
+
+/// d(h / |h|) for a change dh.
+glm::dvec3 turned_by(const glm::dvec3& direction, double length, const glm::dvec3& dh) {
+    return (dh - direction * glm::dot(direction, dh)) / length;
+}
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -44,6 +50,53 @@ LobePoint eval_cap(double height, double q) {
 }
 
 }  // namespace
+
+VisibleNormal sample_visible_normal(const glm::dvec3& w_i, const MicrofacetWidths& widths, double u,
+                                    double v) {
+    const glm::dvec3 widen(widths.x, widths.y, 1);
+    const glm::dvec3 stretched = widen * w_i;
+    const double length = glm::length(stretched);
+    const glm::dvec3 w = stretched / length;
+    const double height = 1 + w.z;
+    const LobeDirection cap = sample_lobe({Lobe::Kind::cap, height}, u, v);
+    const DiskPoint disk = map_to_disk(u, v);
+    const glm::dvec3 half = widen * (cap.D + w);  // not unit
+    const double half_length = glm::length(half);
+    VisibleNormal normal{.m = half / half_length};
+    const auto column = [&](const glm::dvec3& dh) {
+        return turned_by(normal.m, half_length, widen * dh);
+    };
+    normal.dm_du = column(cap.dD_du);
+    normal.dm_dv = column(cap.dD_dv);
+    // At fixed (u, v) the cap moves with its height: dc_z = -q dK, and its sine s = sqrt(K q
+    // (2 - K q)) by (1 - K q) q dK / s, along the point of the disk.
+    const double stretch = std::sqrt(height * (2 - height * disk.q));
+    const glm::dvec3 dcap((1 - height * disk.q) * disk.radius / stretch * disk.outward, -disk.q);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 dwi(0);
+        dwi[axis] = widen[axis];
+        const glm::dvec3 dw = turned_by(w, length, dwi);
+        normal.dm_dwi[axis] = column(dw.z * dcap + dw);
+    }
+    return normal;
+}
+
+// The larger coordinate is the radius, with its sign; the other one over it turns by 45 degrees at
+// most.
+DiskPoint map_to_disk(double u, double v) {
+    constexpr double kPi = std::numbers::pi;
+    const double a = 2 * u - 1, b = 2 * v - 1;
+    const bool by_a = std::abs(a) > std::abs(b) || (a == 0 && b == 0);
+    const double r = by_a ? a : b, other = by_a ? b : a;
+    const double k = r != 0 ? other / r : 0, sign = r < 0 ? -1 : 1;
+    const double phi = by_a ? kPi / 4 * k : kPi / 2 - kPi / 4 * k;
+    // Of b alone the azimuth falls as a grows: the turn has the other sign.
+    const double turn = by_a ? 1 : -1;
+    const DiskColumn along{4 * r, 2 * sign, -turn * kPi / 2 * k * sign};
+    const DiskColumn across{0, 0, turn * kPi / 2 * sign};
+    return {r * r, std::abs(r), sign * glm::dvec2(std::cos(phi), std::sin(phi)),
+            by_a ? along : across, by_a ? across : along};
+}
 
 LobePoint eval_lobe(const Lobe& lobe, double q) {
     switch (lobe.kind) {

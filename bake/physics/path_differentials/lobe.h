@@ -2,9 +2,45 @@
 
 #include <glm/glm.hpp>
 
-#include "bake/physics/path_differentials/disk_map.h"
-
 namespace opaline::bake {
+
+/// Widths of a GGX distribution of normals along the first two axes of the local frame, in (0, 1].
+struct MicrofacetWidths {
+    double x = 0.5, y = 0.5;
+};
+
+/// A normal m of the microfacets that w_i sees, in the frame whose third axis is the surface's
+/// normal, of the density D(m) G1(w_i) (w_i.m) / w_i.z = 1 / |dm_du x dm_dv| by a uniform cap of
+/// the sphere [Dupuy2023]; and how m moves. All that follows from m is a mirror or a refraction at
+/// N = m, D = -w_i, with dD = -dw_i.
+struct VisibleNormal {
+    glm::dvec3 m{0, 0, 1};
+    glm::dvec3 dm_du{0}, dm_dv{0};
+    glm::dmat3 dm_dwi{0.0};  ///< at fixed (u, v)
+};
+
+/// w_i: unit, away from the surface, w_i.z > 0. u, v as map_to_disk has them.
+VisibleNormal sample_visible_normal(const glm::dvec3& w_i, const MicrofacetWidths& widths, double u,
+                                    double v);
+
+/// How a point of the disk moves with one random number.
+struct DiskColumn {
+    double dq = 0;          ///< change of the squared radius
+    double radial = 0;      ///< along `outward`
+    double tangential = 0;  ///< along `outward` turned by +90 degrees
+};
+
+/// A point of the unit disk and its derivatives.
+struct DiskPoint {
+    double q = 0, radius = 0;  ///< q = radius^2 in [0, 1]
+    glm::dvec2 outward{1, 0};  ///< unit
+    DiskColumn du, dv;
+};
+
+/// Uniform over the disk's area: squares around the middle become circles, so that no derivative
+/// diverges there. u, v in [0, 1]. Columns jump on the diagonals; the area that they span is pi
+/// everywhere.
+DiskPoint map_to_disk(double u, double v);
 
 /// A density of directions that is symmetric around an axis, as a function of the share q in [0, 1]
 /// of its directions that are nearer to the axis.

@@ -7,8 +7,7 @@
 
 #include "bake/physics/path_differentials/bounded_change.h"
 #include "bake/physics/path_differentials/footprint.h"
-#include "bake/physics/path_differentials/merge_columns.h"
-#include "bake/physics/path_differentials/visible_normal.h"
+#include "bake/physics/path_differentials/lobe.h"
 
 namespace opaline::bake {
 

@@ -1,5 +1,6 @@
 #include "bake/physics/path_integral/turn.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>
@@ -13,6 +14,17 @@ namespace {
 constexpr double kOpposite = 1e-12;
 
 }  // namespace
+
+ForwardSplit split_forward_peak(const PhaseSeries& series, unsigned degree) {
+    assert(series.lambda.size() >= degree + 2);
+    ForwardSplit split;
+    split.share = std::max(series.lambda[degree + 1], 0.0);
+    assert(split.share < 1);
+    for (unsigned l = 0; l <= degree; ++l) {
+        split.rest.lambda.push_back((series.lambda[l] - split.share) / (1 - split.share));
+    }
+    return split;
+}
 
 Turns::Turns(glm::dvec3 from, glm::dvec3 to) {
     // A path along a vector of length 0 would never arrive anywhere.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/physics/poisson_phase.h"
+#include "bake/physics/phase.h"
 
 namespace opaline::bake {
 namespace {

@@ -16,7 +16,7 @@ enum class PathKernel {
 };
 
 /// Legendre moments of a kernel at depth `ell` >= 0, as many as `series` has: those of
-/// `moment_of_ray` and `moment_of_source` (poisson_phase.h). At ell = 0 those of the source are
+/// `moment_of_ray` and `moment_of_source` (phase.h). At ell = 0 those of the source are
 /// lambda^2. For `ray` divided by 1 - e^-ell, the chance of a scattering on the path, so that the
 /// limit at 0 is finite: lambda^2 again. Not of `boundary`.
 std::vector<double> path_moments(PathKernel kernel, const PhaseSeries& series, double ell);
@@ -43,7 +43,7 @@ struct ZonalTable {
 ZonalTable make_zonal_table(PathKernel kernel, const PhaseSeries& series);
 
 /// The same with directions along paths as [Premoze2003] has them: (12) instead of the exact law
-/// (physics/poisson_phase.h). `kernel`: ray or boundary. As many degrees as for the exact table.
+/// (physics/phase.h). `kernel`: ray or boundary. As many degrees as for the exact table.
 ZonalTable make_power_table(PathKernel kernel, const formats::PhaseFunction& phase,
                             unsigned degrees);
 

@@ -7,7 +7,7 @@
 
 #include "bake/base/stage_log.h"
 #include "bake/pipeline/cost_model.h"
-#include "bake/plan/stage_rates.h"
+#include "bake/plan/stage_work.h"
 #include "formats/opal/result.h"
 
 namespace opaline::bake {

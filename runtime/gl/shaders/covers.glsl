@@ -1,4 +1,4 @@
-// Whether a sample sees a surface of that alpha, as sees_surface of runtime/holes.cpp.
+// Whether a sample sees a surface of that alpha, as sees_surface of runtime/surface.cpp.
 // `cutoff_mode`: cutoff, 1: a mask, 2: a blend, whose samples are spread evenly over any part of the
 // picture, shifted by `triangle`, so that surfaces behind each other need no sorting.
 bool covers(float alpha, vec2 cutoff_mode, uvec2 at, uint triangle) {

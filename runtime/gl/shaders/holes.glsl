@@ -1,4 +1,4 @@
-// As runtime/holes.cpp: which samples see a surface that light passes in places. covers.glsl comes
+// As runtime/surface.cpp: which samples see a surface that light passes in places. covers.glsl comes
 // before it. HOLE_IMAGE: alpha has an image (image.glsl comes before this). HOLE_VERTICES: vertices
 // have alpha. CLEAR_HOLE: light passes it as glass (HAS_VIEW).
 flat layout(location = 6) in uint v_last_vertex;

@@ -1,5 +1,5 @@
 // What a surface sends to the eye from the radiance of its receivers, as runtime/surface.cpp,
-// view_terms.cpp, specular.cpp, normal_map.cpp and turned_light.cpp. No uniforms. cube_map.glsl comes before this.
+// view_terms.cpp, specular.cpp and turned_light.cpp. No uniforms. cube_map.glsl comes before this.
 
 float opaline_displayable(float value) {
     return value > 0.0 ? min(value, 1e35) : 0.0;

@@ -1,10 +1,11 @@
-#include "bake/lights/builtin_environment.h"
-
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
+#include "bake/lights/builtin_environment.h"
+#include "bake/lights/daylight.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {
@@ -143,5 +144,106 @@ TEST(BuiltinEnvironment, FileNamedLikeALightIsOpenedByItsPath) {
     EXPECT_EQ(missing.error().kind, formats::ErrorKind::bad_input);
 }
 
+// [Preetham1999] A.2: absolute luminance of the zenith [kcd/m^2].
+double published_zenith_luminance(double turbidity, double sun_zenith) {
+    const double chi = (4.0 / 9.0 - turbidity / 120.0) * (pi - 2.0 * sun_zenith);
+    return (4.0453 * turbidity - 4.9710) * std::tan(chi) - 0.2155 * turbidity + 2.4192;
+}
+
+TEST(PerezSky, ZenithHasThePublishedLuminance) {
+    for (const double turbidity : {2.0, 4.0, 8.0}) {
+        for (const double sun_zenith : {0.1, 0.6, 1.2}) {
+            const PerezSky sky = make_perez_sky(turbidity, sun_zenith);
+            const double wanted = published_zenith_luminance(turbidity, sun_zenith);
+            EXPECT_NEAR(eval_perez_sky(sky, 1.0, sun_zenith)[1], wanted, 1e-9 * wanted);
+        }
+    }
+}
+
+TEST(PerezSky, IsBrightestAroundTheSun) {
+    const double sun_zenith = 0.9;
+    const PerezSky sky = make_perez_sky(3.0, sun_zenith);
+    const double height = std::cos(sun_zenith);
+    EXPECT_GT(eval_perez_sky(sky, height, 0.05)[1], 3 * eval_perez_sky(sky, height, 1.5)[1]);
+}
+
+TEST(Sun, IlluminanceOnTheGroundIsThatOfAClearDay) {
+    // 128 klx outside the atmosphere; measured clear noon suns give about 90 to 110 klx.
+    const double noon = sun_irradiance(2.0, 0.0)[1];
+    EXPECT_GT(noon, 90.0);
+    EXPECT_LT(noon, 115.0);
+    EXPECT_LT(sun_irradiance(2.0, 1.4)[1], 0.6 * noon);
+    EXPECT_LT(sun_irradiance(6.0, 0.0)[1], 0.8 * noon);
+}
+
+TEST(Sun, ChromaticityAtNoonIsThatOfSunlight) {
+    // Direct noon sunlight lies near 5000 to 5600 K: x 0.33 to 0.35, y 0.34 to 0.36.
+    const Xyz xyz = sun_irradiance(2.0, 0.3);
+    const double sum = xyz[0] + xyz[1] + xyz[2];
+    EXPECT_NEAR(xyz[0] / sum, 0.340, 0.012);
+    EXPECT_NEAR(xyz[1] / sum, 0.350, 0.012);
+}
+
+TEST(Rec709, WhiteOfD65IsEqualInAllBandsAndRedIsItsPrimary) {
+    const auto rgb = formats::rec709_of_xyz({0.95047, 1.0, 1.08883}),
+               red = formats::rec709_of_xyz({0.4124, 0.2126, 0.0193});
+    for (std::size_t band = 0; band < 3; ++band) {
+        EXPECT_NEAR(rgb[band], 1.0, 1e-3);
+        EXPECT_NEAR(red[band], band == 0 ? 1.0 : 0.0, 1e-3);
+    }
+}
+
+double flux(const formats::Image& image) {
+    double sum = 0;
+    for (std::uint32_t row = 0; row < image.height; ++row) {
+        for (std::uint32_t column = 0; column < image.width; ++column) {
+            sum += double{image.pixel[std::size_t{row} * image.width + column].r} *
+                   lat_long_pixel_solid_angle(image.width, image.height, row);
+        }
+    }
+    return sum;
+}
+
+TEST(Rasterise, PixelSolidAnglesAddUpToTheSphere) {
+    for (const std::uint32_t height : {1u, 2u, 7u, 512u}) {
+        double sum = 0;
+        for (std::uint32_t row = 0; row < height; ++row) {
+            sum += 3 * lat_long_pixel_solid_angle(3, height, row);
+        }
+        EXPECT_NEAR(sum, 4 * std::numbers::pi, 1e-12) << height;
+    }
+}
+
+TEST(Rasterise, DiscKeepsItsFluxInAnyResolution) {
+    for (const double radius : {0.0046, 0.3, 1.5}) {
+        for (const double elevation : {30.0, 89.9, -90.0}) {
+            Environment environment;
+            environment.discs.push_back(
+                {direction_of(33, elevation), static_cast<float>(radius), {2, 2, 2}});
+            const double wanted = 2 * formats::disc_solid_angle(static_cast<float>(radius));
+            for (const std::uint32_t height : {8u, 64u}) {
+                EXPECT_NEAR(flux(rasterise_lat_long(environment, 2 * height, height)), wanted,
+                            1e-5 * wanted)
+                    << radius << " " << elevation << " " << height;
+            }
+        }
+    }
+}
+
+TEST(Rasterise, MapOfTheSameShapeIsCopied) {
+    const auto studio = make_environment("studio");
+    ASSERT_TRUE(studio);
+    const formats::Image image = rasterise_lat_long(*studio, studio->width, studio->height);
+    EXPECT_EQ(image.pixel, studio->pixel);
+}
+
+TEST(Rasterise, CoarserMapKeepsTheMeanOverTheSphere) {
+    const auto studio = make_environment("studio");
+    ASSERT_TRUE(studio);
+    const double fine = flux(rasterise_lat_long(*studio, studio->width, studio->height));
+    EXPECT_NEAR(flux(rasterise_lat_long(*studio, 128, 64)), fine, 2e-3 * fine);
+}
+
 }  // namespace
+
 }  // namespace opaline::bake

@@ -1,16 +1,25 @@
 // The files that `opaline example` leaves behind.
-
+// Parts of the example `lamp`.
+// Parts of the example `playing-pieces`.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include <tbb/global_control.h>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bake/lab/example/example_scenes.h"
+#include "bake/lab/example/scene_parts.h"
+#include "formats/media/load_clouds.h"
+#include "formats/media/read_media.h"
+#include "tests/bake/example/facing.h"
 #include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {
@@ -166,5 +175,77 @@ TEST_F(ExampleFiles, LeaveNoGltfWithoutItsBuffer) {
     EXPECT_FALSE(fs::exists(folder_ / "small.gltf"));
 }
 
+TEST(LampExample, SurfacesFaceOutward) {
+    expect_facing_normals(make_shade({}));
+    expect_facing_normals(make_thick_shade({}, 5));
+    expect_facing_normals(make_lamp_foot());
+    expect_facing_normals(make_panel({}));
+    expect_facing_normals(make_wall());
+}
+
+TEST(LampExample, ThickShadeIsClosed) {
+    const double volume = enclosed_volume(make_thick_shade({}, 5));
+    // 2 pi times the mean radius times the area of the profile; 48 chords are a little shorter.
+    EXPECT_NEAR(volume / (2 * 3.14159265 * 82.5 * 5 * 120), 0.997, 0.003);
+}
+
+TEST(PlayingPieces, SurfacesFaceOutward) {
+    expect_facing_normals(make_board());
+    for (const TriangleMesh& piece :
+         {make_pawn(0, 0), make_draughtsman(0, 0), make_squashed_ball(0, 0), make_stand(0, 0)}) {
+        EXPECT_GT(enclosed_volume(piece), 1000);
+        expect_facing_normals(piece);
+    }
+}
+
+TEST(PlayingPieces, StandInSquaresOfTheirOwn) {
+    const auto objects = make_example("playing-pieces");
+    ASSERT_TRUE(objects);
+    std::vector<std::pair<double, double>> squares;
+    for (const GltfObject& object : *objects) {
+        if (object.name == "Board" || object.name == "Floor") continue;
+        glm::dvec3 low(1), high(-1);
+        for (const glm::dvec3& p : object.mesh.position) {
+            low = glm::min(low, p);
+            high = glm::max(high, p);
+        }
+        if (object.name == "Glass") {  // on its stand
+            EXPECT_GT(low.y, 0.017);
+            continue;
+        }
+        EXPECT_NEAR(low.y, -0.0004, 1e-9) << object.name;
+        constexpr double kSquare = 1e-3 * kSquareSide;
+        const std::pair square{std::floor(low.x / kSquare), std::floor(low.z / kSquare)};
+        EXPECT_LT(high.x, (square.first + 1) * kSquare + 1e-3) << object.name;
+        EXPECT_LT(high.z, (square.second + 1) * kSquare + 1e-3) << object.name;
+        EXPECT_LE(std::abs(square.first + 0.5), 4);
+        EXPECT_LE(std::abs(square.second + 0.5), 4);
+        EXPECT_EQ(std::ranges::count(squares, square), 0);
+        squares.push_back(square);
+    }
+    EXPECT_EQ(squares.size(), 7u);
+}
+
+TEST(Stratus, IsAMediaFileOfALayerOverItsGround) {
+    const tests::TemporaryFolder folder;
+    const auto files = write_example("stratus", folder.path());
+    ASSERT_TRUE(files);
+    EXPECT_THAT(*files, testing::ElementsAre(folder / "stratus.json", folder / "stratus.png"));
+    EXPECT_TRUE(make_example("stratus")->empty()) << "no mesh";
+    const auto media = formats::read_media(files->front());
+    ASSERT_TRUE(media) << media.error().diagnostics.front().fault;
+    EXPECT_EQ(media->inputs.size(), 2u);
+    formats::Scene scene;
+    ASSERT_TRUE(formats::load_clouds(*media, scene));
+    ASSERT_EQ(scene.layers.size(), 1u);
+    const formats::CloudLayer& layer = scene.layers[0];
+    EXPECT_TRUE(layer.repeats);
+    EXPECT_EQ(layer.ground_columns, 512u);
+    EXPECT_EQ(layer.ground_rows, 512u);
+    EXPECT_FLOAT_EQ(*std::max_element(layer.thickness.begin(), layer.thickness.end()), 240);
+    EXPECT_GT(std::count(layer.thickness.begin(), layer.thickness.end(), 0.0f), 0);
+}
+
 }  // namespace
+
 }  // namespace opaline::bake

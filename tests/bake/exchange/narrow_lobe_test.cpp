@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/exchange/bounce_gather.h"
 #include "bake/exchange/scatterers.h"
 #include "bake/plan/surface_albedo.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/exchange/bounce_light.h"
 #include "bake/exchange/bounce_rays.h"
 #include "bake/lights/test_lights.h"

@@ -1,17 +1,22 @@
-#include "bake/check/measure_error.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
+#include "bake/check/measure_error.h"
+#include "bake/check/surface_probes.h"
 #include "bake/effects/multiple/true_multiple.h"
 #include "bake/effects/single/true_single.h"
-#include "bake/lights/true_reflection.h"
+#include "bake/lights/test_lights.h"
+#include "bake/lights/true_irradiance.h"
 #include "bake/physics/fresnel.h"
 #include "bake/receivers/vertex_receivers.h"
 #include "formats/opal/cubemap.h"
 #include "tests/bake/single/single_support.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temporary_folder.h"
 
 namespace opaline::bake {
 namespace {
@@ -134,5 +139,131 @@ TEST(ErrorBounds, NoiseOfTheTruthIsNoError) {
     EXPECT_LT(bounds.highest - bounds.lowest, 0.02);
 }
 
+std::string read(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+void expect_same(const std::vector<TestLight>& a, const std::vector<TestLight>& b) {
+    ASSERT_EQ(a.size(), b.size());
+    for (std::size_t l = 0; l < a.size(); ++l) {
+        EXPECT_EQ(a[l].name, b[l].name);
+        EXPECT_EQ(a[l].smooth, b[l].smooth);
+        EXPECT_EQ(a[l].coarse, b[l].coarse);
+        ASSERT_EQ(a[l].discs.size(), b[l].discs.size());
+        for (std::size_t d = 0; d < a[l].discs.size(); ++d) {
+            EXPECT_EQ(a[l].discs[d].direction, b[l].discs[d].direction);
+            EXPECT_EQ(a[l].discs[d].angular_radius, b[l].discs[d].angular_radius);
+            EXPECT_EQ(a[l].discs[d].flux, b[l].discs[d].flux);
+        }
+    }
+}
+
+TEST(TestLightCache, LightsFromTheCacheAreTheSameBits) {
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "new" / "lights";
+    EXPECT_TRUE(read_test_lights(file).empty());
+    const auto plain = make_test_lights(16, 2), first = make_test_lights(16, 2, file);
+    ASSERT_TRUE(plain && first);
+    ASSERT_EQ(read_test_lights(file).size(), published_lights().size());
+    const auto second = make_test_lights(16, 2, file);
+    ASSERT_TRUE(second);
+    expect_same(*plain, *first);
+    expect_same(*plain, *second);
+}
+
+TEST(TestLightCache, DamagedFilesAreNotUsed) {
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path file = folder / "lights";
+    ASSERT_TRUE(make_test_lights(8, 2, file));
+    const std::string whole = read(file);
+    for (std::size_t at = 0; at < whole.size(); at += whole.size() / 50) {
+        std::string damaged = whole;
+        damaged[at] = static_cast<char>(damaged[at] ^ 0x40);
+        std::ofstream(file, std::ios::binary) << damaged;
+        EXPECT_TRUE(read_test_lights(file).empty()) << at;
+        std::ofstream(file, std::ios::binary) << whole.substr(0, at);
+        EXPECT_TRUE(read_test_lights(file).empty()) << at;
+    }
+    std::ofstream(file, std::ios::binary) << whole;
+    EXPECT_FALSE(read_test_lights(file).empty());
+}
+
+TEST(TestLightCache, CacheThatCannotBeWrittenChangesNothing) {
+    EXPECT_TRUE(make_test_lights(8, 2, "/proc/no/such/folder/lights"));
+}
+
+std::vector<CheckPoint> draw(const formats::Scene& scene, std::size_t count,
+                             const std::vector<std::uint32_t>& primitives, unsigned threads = 2) {
+    const auto rays = RayScene::build(scene, 1);
+    EXPECT_TRUE(rays);
+    Context context;
+    context.threads = threads;
+    return draw_surface_probes(scene, *rays, primitives, {count, 5, 1000}, context);
+}
+
+TEST(SurfaceProbes, AreSharedOutByAreaAndLieWhereTheirWeightsSay) {
+    // Areas 36 and 4.
+    const auto scene = tests::make_scene({tests::make_quad({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}, 3),
+                                          tests::make_quad({9, 0, 0}, {0, 0, 2}, {2, 0, 0}, 40)});
+    const auto probes = draw(scene, 400, {0, 1});
+    ASSERT_EQ(probes.size(), 400u);
+    std::size_t first = 0;
+    glm::dvec3 mean(0);
+    const auto vertices = static_cast<std::uint32_t>(scene.primitives[0].position.size());
+    for (std::size_t i = 0; i < probes.size(); ++i) {
+        const CheckPoint& probe = probes[i];
+        glm::vec3 mixed(0);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::uint32_t v = probe.vertex[k] - (probe.primitive == 0 ? 0 : vertices);
+            EXPECT_GE(probe.weight[k], 0);
+            mixed += probe.weight[k] * scene.primitives[probe.primitive].position[v];
+        }
+        EXPECT_LT(glm::distance(mixed, probe.body.position), 1e-5f);
+        EXPECT_NEAR(probe.weight[0] + probe.weight[1] + probe.weight[2], 1, 1e-6);
+        EXPECT_EQ(probe.key, 1000 + i);
+        if (probe.primitive == 0) {
+            ++first;
+            mean += glm::dvec3(probe.body.position);
+        }
+    }
+    EXPECT_EQ(first, 360u);  // strata of equal area
+    EXPECT_LT(glm::length(mean) / 360, 0.3);
+}
+
+TEST(SurfaceProbes, PrimitivesThatAreNotListedGetNone) {
+    const auto scene = tests::make_scene({tests::make_quad({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}),
+                                          tests::make_quad({9, 0, 0}, {0, 0, 2}, {2, 0, 0})});
+    for (const CheckPoint& probe : draw(scene, 50, {1})) {
+        EXPECT_EQ(probe.primitive, 1u);
+    }
+    EXPECT_TRUE(draw(scene, 50, {}).empty());
+}
+
+TEST(SurfaceProbes, NoneLiesInsideABody) {
+    // Half of the ball below the floor's plane: nobody sees the floor within it.
+    const auto scene = tests::make_scene(
+        {tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), tests::make_sphere(4)});
+    const auto probes = draw(scene, 400, {0});
+    // pi of 16 are hidden.
+    EXPECT_NEAR(static_cast<double>(probes.size()), 400 * (1 - 3.1416 / 16), 32);
+    for (const CheckPoint& probe : probes) {
+        EXPECT_GT(glm::length(probe.body.position), 0.99f);
+    }
+}
+
+TEST(SurfaceProbes, NormalsAreThoseOfTheSmoothSurfaceAndTheInnerPointLiesInside) {
+    const auto scene = tests::make_scene({tests::make_sphere(2)});
+    for (const CheckPoint& probe : draw(scene, 100, {0})) {
+        const glm::vec3 out = glm::normalize(probe.body.position);
+        EXPECT_GT(glm::dot(probe.body.normal, out), 0.999f);
+        EXPECT_EQ(probe.body.normal, probe.receiver.normal);
+        EXPECT_GT(glm::dot(probe.receiver.origin - probe.body.position, out), 0);
+        EXPECT_LT(glm::dot(probe.body.inner - probe.body.position, out), 0);
+        EXPECT_LT(glm::distance(probe.body.inner, probe.body.position), 1e-4f);
+    }
+}
+
 }  // namespace
+
 }  // namespace opaline::bake

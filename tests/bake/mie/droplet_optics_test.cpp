@@ -55,24 +55,6 @@ TEST(DropletOptics, NarrowDistributionIsOneSphere) {
     }
 }
 
-TEST(DropletOptics, SumsHaveTheSameBitsForAnyNumberOfThreads) {
-    const auto run = [](unsigned threads) {
-        Context context;
-        context.threads = threads;
-        const RadiusSampling coarse{0.2, 100, 200};
-        return average_droplets({1e8, 1e-6, 3}, 550e-9, {1.333, 2e-9}, coarse, context).value();
-    };
-    const DropletOptics once = run(1);
-    for (const unsigned threads : {2u, 5u}) {
-        const DropletOptics more = run(threads);
-        EXPECT_EQ(more.phase.value, once.phase.value);
-        EXPECT_EQ(more.c_ext, once.c_ext);
-        EXPECT_EQ(more.c_abs, once.c_abs);
-        EXPECT_EQ(more.g, once.g);
-        EXPECT_EQ(more.error.phase_rms, once.error.phase_rms);
-    }
-}
-
 // The estimate from even and odd radii is the error against many more radii, within a factor of 4.
 TEST(DropletOptics, ErrorThatIsReportedIsTheErrorAgainstMoreRadii) {
     const DropletDistribution d{1e8, 2e-6, 3};

@@ -1,12 +1,16 @@
-#include "bake/effects/multiple/medium_profile.h"
-
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
-#include "bake/effects/multiple/gather_profile.h"
+#include "bake/effects/multiple/medium_profile.h"
+#include "bake/effects/multiple/sample_transport.h"
+#include "bake/effects/multiple/choose_model.h"
 #include "bake/physics/fresnel.h"
 #include "bake/physics/slab/even_light.h"
+#include "bake/receivers/surface_samples.h"
+#include "tests/support/scenes.h"
 
 namespace opaline::bake {
 namespace {
@@ -114,5 +118,70 @@ TEST(SampleCount, FollowsTheReceiversWhereTheyAreFartherApartThanLightSpreads) {
     EXPECT_EQ(count_samples(1, 1e-3, {1, 500, 1e6}), 500u);
 }
 
+double length(const SparseVector& vector) {
+    double squares = 0;
+    for (const float value : vector.value) {
+        squares += static_cast<double>(value) * static_cast<double>(value);
+    }
+    return std::sqrt(squares);
+}
+
+// Half of the sky, weighted by the cosine: the mean over the sphere is 1/4. A row with all entries
+// has the norm of the whole vector times the area of its sample, with and without shared rays.
+TEST(SampleTransport, OfAConvexBodyIsTheCosineTimesTheAreaOfEachSample) {
+    const formats::Scene scene = tests::make_scene({tests::make_sphere(2)});
+    const auto rays = RayScene::build(scene, 1);
+    const auto samples = sample_surface(scene, {0}, 150, 1, {});
+    ASSERT_GT(samples.size(), SparseVectors::kPerBlock) << "more than one block";
+    for (const bool share_rays : {false, true}) {
+        const SampleTransport found =
+            bake_sample_transport(*rays, samples, {16, 6 * 16 * 16, 1, share_rays}, {});
+        ASSERT_EQ(found.rows.size(), samples.size());
+        for (std::size_t i = 0; i < samples.size(); ++i) {
+            EXPECT_NEAR(found.mean[i], 0.25, 0.02) << i;
+            const double whole =
+                static_cast<double>(samples[i].area) * static_cast<double>(found.norm[i]);
+            EXPECT_NEAR(length(found.rows[i]), whole, 1e-5 * whole) << i;
+        }
+    }
+}
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+WalkCounts lose(std::uint64_t lost, std::uint64_t endless, double unfinished) {
+    WalkCounts counts;
+    counts.walks = 1000;
+    counts.lost = lost;
+    counts.endless = endless;
+    counts.ends.unfinished[0] = unfinished;
+    counts.ends.left[0] = 1000 - unfinished;
+    return counts;
+}
+
+TEST(UnfinishedWalks, OfALittleLightNothingIsSaid) {
+    EXPECT_FALSE(describe_unfinished("Wax", {}));
+    EXPECT_FALSE(describe_unfinished("Wax", lose(3, 0, 0.9)));
+}
+
+TEST(UnfinishedWalks, HowMuchLightWhyAndWhatIsDoneAboutItIsStated) {
+    const auto holes = describe_unfinished("Wax", lose(30, 0, 16));
+    ASSERT_TRUE(holes);
+    EXPECT_EQ(holes->where, "material 'Wax'");
+    EXPECT_THAT(holes->fault,
+                AllOf(HasSubstr("of 1000 random walks 30 leave through holes of its mesh: 1.6 %"),
+                      HasSubstr("as bright as the rest"), Not(HasSubstr("too often"))));
+    EXPECT_EQ(holes->remedy, "close the surface");
+    const auto closed = describe_unfinished("Wax", lose(0, 20, 9));
+    ASSERT_TRUE(closed);
+    EXPECT_THAT(closed->fault, AllOf(HasSubstr("20 scatter too often"), Not(HasSubstr("holes"))));
+    EXPECT_THAT(closed->remedy, HasSubstr("--check-model"));
+    const auto mostly_hole = describe_unfinished("Wax", lose(700, 0, 600));
+    ASSERT_TRUE(mostly_hole);
+    EXPECT_THAT(mostly_hole->fault, AllOf(HasSubstr("60.0 %"), HasSubstr("is missing")));
+}
+
 }  // namespace
+
 }  // namespace opaline::bake

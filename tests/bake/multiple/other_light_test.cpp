@@ -6,7 +6,7 @@
 #include "bake/effects/multiple/sample_transport.h"
 #include "bake/effects/multiple/walks/exit_light.h"
 #include "bake/exchange/other_light.h"
-#include "bake/exchange/patch_light.h"
+#include "bake/exchange/exchange_points.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/trace/irradiance_transport.h"
 #include "formats/opal/haar.h"

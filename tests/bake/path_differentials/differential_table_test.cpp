@@ -2,11 +2,10 @@
 #include <map>
 #include <string>
 
-#include "bake/physics/path_differentials/area_sample.h"
 #include "bake/physics/path_differentials/axis_frame.h"
 #include "bake/physics/path_differentials/path_differential.h"
 #include "bake/physics/path_differentials/surface_shape.h"
-#include "bake/scene/texture_taps.h"
+#include "bake/scene/sample_image.h"
 #include "tests/bake/path_differentials/event_check.h"
 #include "tests/support/named_table.h"
 #include "tests/support/reference_table.h"

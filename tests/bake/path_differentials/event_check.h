@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/bake/path_differentials/dual.h"
 #include "tests/bake/path_differentials/primal.h"
 #include "tests/bake/path_differentials/random_inputs.h"
 

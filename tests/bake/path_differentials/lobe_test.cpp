@@ -1,5 +1,5 @@
 #include "bake/physics/path_differentials/lobe.h"
-
+#include "bake/physics/path_differentials/surface_shape.h"
 #include "tests/bake/path_differentials/event_check.h"
 
 namespace opaline::bake {
@@ -130,5 +130,63 @@ TEST(Lobe, AxisHasALimit) {
     }
 }
 
+glm::dvec3 on_disk(const DiskPoint& at, const DiskColumn& by) {
+    const glm::dvec2 across(-at.outward.y, at.outward.x);
+    return {by.radial * at.outward + by.tangential * across, 0};
+}
+
+// Hard case: 0/0 in the middle.
+TEST(DiskMap, MiddleHasTheColumns2AndHalfPi) {
+    const DiskPoint at = map_to_disk(0.5, 0.5);
+    EXPECT_EQ(on_disk(at, at.du), glm::dvec3(2, 0, 0));
+    EXPECT_NEAR(on_disk(at, at.dv).y, std::numbers::pi / 2, 1e-16);
+    EXPECT_EQ(on_disk(at, at.dv).x, 0);
+}
+
+// Hard case: columns jump where |a| = |b|, what they span does not.
+TEST(DiskMap, AreaIsContinuousAcrossTheDiagonals) {
+    for (const double sign : {1.0, -1.0}) {
+        for (const double off : {-1e-9, 0.0, 1e-9}) {
+            const DiskPoint at = map_to_disk(0.8 + off, 0.5 + sign * 0.3);
+            const glm::dvec3 area = glm::cross(on_disk(at, at.du), on_disk(at, at.dv));
+            EXPECT_NEAR(area.z, std::numbers::pi, 1e-12);
+        }
+    }
+}
+
+/// D(m) G1(w) (w.m) / w.z of [Walter2007] over solid angle of m [1/sr].
+double seen_density(const glm::dvec3& m, const glm::dvec3& w, const MicrofacetWidths& a) {
+    const glm::dvec3 scaled(m.x / a.x, m.y / a.y, m.z), stretched(a.x * w.x, a.y * w.y, w.z);
+    const double square = glm::dot(scaled, scaled);
+    return 2 * glm::dot(w, m) /
+           (std::numbers::pi * a.x * a.y * square * square * (w.z + glm::length(stretched)));
+}
+
+// Head-on the cap is the whole upper half of the sphere, and its middle has a limit.
+TEST(VisibleNormal, HeadOnInTheMiddleIsTheSurfacesNormal) {
+    const VisibleNormal at = sample_visible_normal({0, 0, 1}, {0.3, 0.3}, 0.5, 0.5);
+    EXPECT_LT(glm::length(at.m - glm::dvec3(0, 0, 1)), 1e-15);
+    const double product =
+        glm::length(glm::cross(at.dm_du, at.dm_dv)) * seen_density(at.m, {0, 0, 1}, {0.3, 0.3});
+    EXPECT_NEAR(product, 1, 1e-12);
+    // Tilting the view by x tilts the stretched one by 0.3 x, its half by 0.15 x, m by 0.3 of that.
+    EXPECT_LT(glm::length(at.dm_dwi * glm::dvec3(1, 0, 0) - glm::dvec3(0.045, 0, 0)), 1e-15);
+}
+
+TEST(SurfaceShape, TriangleWithoutAreaIsFlat) {
+    const glm::dvec3 A(1, 2, 3), along(1e-3, 2e-3, -1e-3);
+    const std::array<glm::dvec3, 3> normals{glm::dvec3(0, 0, 1), {0, 0.6, 0.8}, {0.6, 0, 0.8}};
+    for (const glm::dvec3& C : {A, A + along, A + 3.0 * along}) {
+        const SurfaceShape shape = interpolated_shape({A, A + along, C}, normals, A);
+        EXPECT_EQ(shape.dN_dP * along, glm::dvec3(0));
+        EXPECT_NEAR(glm::length(shape.N), 1, 1e-15);
+    }
+    // A needle of a millionth of its length is not.
+    const SurfaceShape thin =
+        interpolated_shape({A, A + glm::dvec3(1, 0, 0), A + glm::dvec3(0, 1e-6, 0)}, normals, A);
+    EXPECT_NEAR(glm::length(thin.dN_dP * glm::dvec3(0, 1e-6, 0)), 0.6, 1e-6);
+}
+
 }  // namespace
+
 }  // namespace opaline::bake

@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "bake/physics/path_differentials/area_sample.h"
+#include "bake/physics/path_differentials/axis_frame.h"
 #include "tests/bake/path_differentials/event_check.h"
 #include "tests/bake/path_differentials/path_rules.h"
 

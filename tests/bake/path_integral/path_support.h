@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "bake/physics/path_integral/turn.h"
-#include "bake/physics/path_integral/volume_box.h"
+#include "bake/physics/path_integral/grid_medium.h"
 #include "formats/sparse_grid.h"
 #include "tests/support/volume_table.h"
 

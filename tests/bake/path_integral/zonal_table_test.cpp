@@ -7,9 +7,8 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/physics/path_integral/forward_split.h"
+#include "bake/physics/path_integral/turn.h"
 #include "bake/physics/phase.h"
-#include "bake/physics/poisson_phase.h"
 #include "tests/bake/scattering/phase_support.h"
 
 namespace opaline::bake {

@@ -1,8 +1,13 @@
-#include "bake/pipeline/predict_memory.h"
-
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "bake/pipeline/cost_model.h"
+#include "bake/pipeline/predict_memory.h"
+#include "bake/pipeline/savings.h"
+#include "bake/scene/inspect_scene.h"
 #include "tests/support/effects.h"
+#include "tests/support/media.h"
 
 namespace opaline::bake {
 namespace {
@@ -78,5 +83,66 @@ TEST(PredictMemory, LightOfOtherSurfacesIsKeptAndItsColourWidensRows) {
     EXPECT_GT(predict_memory(all_effects(), counts, knobs, 1).bytes(), alone + 1e6);
 }
 
+struct Planned {
+    formats::Scene scene;
+    SceneFacts facts;
+    std::vector<PlanEntry> plan;
+    CostPrediction cost;
+};
+
+// A grey ball over an opaque floor, and what each entry saves.
+Planned plan_ball(const formats::Medium& medium) {
+    formats::Primitive floor = tests::make_quad({-3, -1.02f, -3}, {0, 0, 6}, {6, 0, 0}, 8);
+    floor.material = 1;
+    Planned p{tests::make_translucent_scene({tests::make_sphere(2), floor}, medium), {}, {}, {}};
+    p.facts = inspect_scene(p.scene);
+    p.plan = plan_bake(p.scene, p.facts, {});
+    p.cost = predict_costs(p.scene, p.facts, {}, {}, 2, p.plan);
+    predict_savings(p.scene, p.facts, {}, {}, 2, p.plan);
+    return p;
+}
+
+TEST(Savings, AreWhatTurningTheEntryOnWouldAdd) {
+    const Planned p = plan_ball(tests::make_grey_medium(40, 1));
+    const auto colour = std::find_if(p.plan.begin(), p.plan.end(), [](const PlanEntry& entry) {
+        return entry.name == "light.colour";
+    });
+    ASSERT_FALSE(colour->on);
+    std::vector<PlanEntry> forced = p.plan;
+    forced[static_cast<std::size_t>(colour - p.plan.begin())].on = true;
+    const CostPrediction more = predict_costs(p.scene, p.facts, {}, {}, 2, forced);
+    EXPECT_GT(colour->saved_seconds, 0);
+    EXPECT_GT(colour->saved_bytes, 0u);
+    EXPECT_NEAR(colour->saved_seconds, more.seconds - p.cost.seconds, 1e-9 * more.seconds);
+    EXPECT_EQ(colour->saved_bytes, more.bytes - p.cost.bytes);
+}
+
+// A medium that lets nothing out saves what scattering would take, and nothing by not being shown
+// as a diffuse surface: that would be another look, not more of the same.
+TEST(Savings, AreOfEffectsThatAreOffAndNotOfAnotherLook) {
+    const Planned p = plan_ball(tests::make_grey_medium(1e-4f, 1));
+    for (const char* effect : {"multiple", "single"}) {
+        ASSERT_FALSE(find_entry(p.plan, effect, 0)->on);
+        EXPECT_GT(find_entry(p.plan, effect, 0)->saved_seconds, 0) << effect;
+    }
+    ASSERT_FALSE(find_entry(p.plan, "direct", 0)->on);
+    for (const PlanEntry& entry : p.plan) {
+        const bool may_save = !entry.on && entry.name != "direct";
+        EXPECT_TRUE(may_save || (entry.saved_seconds == 0 && entry.saved_bytes == 0))
+            << entry.name << " of " << entry.subject.name;
+    }
+}
+
+TEST(Savings, LeaveThePredictionAsItWas) {
+    Planned p = plan_ball(tests::make_grey_medium(40, 1));
+    double seconds = p.cost.shared_seconds;
+    for (const PlanEntry& entry : p.plan) {
+        EXPECT_TRUE(entry.on || entry.predicted_seconds == 0) << entry.name;
+        seconds += entry.predicted_seconds;
+    }
+    EXPECT_NEAR(seconds, p.cost.seconds, 1e-9 * seconds);
+}
+
 }  // namespace
+
 }  // namespace opaline::bake

@@ -117,5 +117,121 @@ TEST(FilteredPicture, EvenTexturesAndSmallFootprintsAreLookedUpAtPoints) {
     EXPECT_EQ(rms_difference(view.pixels(true, 4, 1), view.pixels(false, 4, 1)), 0);
 }
 
+using formats::Material;
+
+/// A white floor under a plate with this alpha mode.
+Scene floor_and_plate(Material::AlphaMode mode, float alpha) {
+    Scene scene = make_scene({make_quad({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}),
+                              make_quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2})});
+    Material& plate = scene.materials.emplace_back();
+    plate.base_color = {0, 0, 0};
+    plate.double_sided = true;
+    plate.alpha_mode = mode;
+    plate.alpha = alpha;
+    scene.primitives[1].material = 1;
+    return scene;
+}
+
+TEST(ReferenceHoles, BlendTransmitsWhatItDoesNotCover) {
+    Scene scene = floor_and_plate(Material::AlphaMode::blend, 0.3f);
+    // Always the same line to the light: only the key tells its paths apart.
+    scene.lights.push_back(unit_sun({0, -1, 0}));
+    const auto fixture = make_fixture(std::move(scene), {});
+    const bake::Moments below = look(fixture->space(), {0.2f, 0.5f, 0.1f}, {0, -1, 0}, 20000);
+    EXPECT_NEAR(below.mean.x, 0.7, 3 * standard_error(below));
+    // From above, the eye's ray passes the plate as well; beneath it the light passed once more.
+    const bake::Moments above = look(fixture->space(), {0.2f, 2, 0.1f}, {0, -1, 0}, 20000);
+    EXPECT_NEAR(above.mean.x, 0.7 * 0.7, 3 * standard_error(above));
+}
+
+TEST(ReferenceHoles, AMaskIsThereOrNot) {
+    for (const float alpha : {0.4f, 0.6f}) {
+        Scene scene = floor_and_plate(Material::AlphaMode::mask, alpha);
+        scene.lights.push_back(unit_sun({0, -1, 0}));
+        const auto fixture = make_fixture(std::move(scene), {});
+        EXPECT_NEAR(look(fixture->space(), {0.2f, 2, 0.1f}, {0, -1, 0}, 4).mean.x,
+                    alpha < 0.5f ? 1 : 0, 1e-5);
+    }
+}
+
+// A white floor whose normal map tilts it evenly toward u, which grows toward +x.
+Scene tilted_floor(std::uint8_t x, std::uint8_t z, float sign) {
+    Scene scene = make_scene({make_quad({-50, 0, 50}, {100, 0, 0}, {0, 0, -100})});
+    formats::Primitive& floor = scene.primitives[0];
+    floor.texcoord.assign(4, {0.5f, 0.5f});
+    floor.tangent.assign(4, {sign, 0, 0, sign});
+    scene.images.push_back({1, 1, {x, 128, z, 255}});
+    scene.materials[0].normal_image = 0;
+    return scene;
+}
+
+float seen_under_sun(Scene scene, glm::vec3 travel) {
+    scene.lights.push_back(unit_sun(travel));
+    const auto fixture = make_fixture(std::move(scene), {});
+    return static_cast<float>(look(fixture->space(), {0.2f, 2, 0.1f}, {0, -1, 0}, 16).mean.x);
+}
+
+TEST(ReferenceNormalMap, TiltsTheCosineOfASunAndKeepsTheTrianglesSides) {
+    const glm::vec3 mapped = glm::normalize(glm::vec3(43, 119, 0));
+    for (const float sign : {1.0f, -1.0f}) {
+        const Scene scene = tilted_floor(128 + 43, 128 + 119, sign);
+        for (const glm::vec3 travel : {glm::vec3(-1, -2, 0.3f), glm::vec3(1, -2, 0.3f)}) {
+            const glm::vec3 normal(sign * mapped.x, mapped.y, 0);
+            EXPECT_NEAR(seen_under_sun(scene, travel), glm::dot(normal, -glm::normalize(travel)),
+                        1e-5f);
+        }
+        // Grazing from below: the tilted normal would see it, the triangle does not.
+        EXPECT_EQ(seen_under_sun(scene, {-sign, 0.05f, 0}), 0);
+    }
+}
+
+TEST(ReferenceNormalMap, FlatOneIsTheVerticesNormal) {
+    EXPECT_NEAR(seen_under_sun(tilted_floor(128, 255, 1), {-1, -2, 0.3f}),
+                seen_under_sun(tilted_floor(128, 128, 1), {-1, -2, 0.3f}), 1e-6f);
+}
+
+bake::Moments trace(const ReferenceFixture& body, bool by_sky, std::uint32_t samples) {
+    const auto receivers = bake::choose_receivers(body.scene, 1, 3, std::nullopt);
+    bake::Moments all;
+    for (std::uint32_t s = 0; s < samples; ++s) {
+        bake::RandomStream random(0, 0, s);
+        const bake::PathSample path = bake::trace_receiver(body.space(), receivers[0], random);
+        all.add(glm::dvec3(by_sky ? path.sky : path.radiance));
+        if (path.sky != glm::vec3(0)) {
+            EXPECT_NEAR(glm::length(path.to_sky), 1, 1e-5f);
+        }
+    }
+    return all;
+}
+
+Scene make_ball(float eta) {
+    Scene input = make_scene({make_sphere(2)});
+    input.materials[0].medium = make_medium(3, 0.9f, 0.3f, eta);
+    return input;
+}
+
+// Behind a boundary that refracts nothing else reaches the light: path by path.
+TEST(SkyEnd, InTheDarkIsWorthWhatEvenLightAddsBehindARefractingBoundary) {
+    const auto dark = make_fixture(make_ball(1.4f), {}),
+               lit = make_fixture(make_ball(1.4f), make_white_sky());
+    const bake::Moments weights = trace(*dark, true, 2000), light = trace(*lit, false, 2000);
+    EXPECT_GT(light.mean.x, 0.1);
+    EXPECT_NEAR(weights.mean.x, light.mean.x, 1e-6);
+    EXPECT_EQ(trace(*dark, false, 100).mean.x, 0);
+}
+
+// A matched one is seen through: there even light is sampled too, and the dark counts alone.
+TEST(SkyEnd, InTheDarkIsWorthWhatEvenLightAddsWhereItIsSampledToo) {
+    const auto dark = make_fixture(make_ball(1), {}),
+               lit = make_fixture(make_ball(1), make_white_sky());
+    const bake::Moments weights = trace(*dark, true, 20000), light = trace(*lit, false, 20000),
+                        part = trace(*lit, true, 20000);
+    const double error = std::hypot(standard_error(weights), standard_error(light));
+    EXPECT_LT(error, 0.01);
+    EXPECT_NEAR(weights.mean.x, light.mean.x, 4 * error);
+    EXPECT_LT(part.mean.x, 0.9 * light.mean.x);
+}
+
 }  // namespace
+
 }  // namespace opaline::tests

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "bake/reference/directional_albedo.h"
 #include "bake/reference/ggx.h"
 #include "bake/reference/glossy_brdf.h"
 #include "bake/reference/random_stream.h"

@@ -1,10 +1,12 @@
-#include "bake/physics/dipole.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <numbers>
 
+#include "bake/physics/dipole.h"
 #include "bake/physics/fresnel.h"
+#include "bake/physics/profile.h"
 #include "tests/bake/scattering/table_support.h"
 
 namespace opaline::bake {
@@ -104,5 +106,75 @@ TEST(Dipole, MediumThatDoesNotScatterIsBlack) {
     }
 }
 
+TEST(BeamDiffusion, TailIsTheIntegralOfTheProfile) {
+    const BeamDiffusion beam = make_beam_diffusion(1.0, 0.05, 1.3);
+    double sum = 0, low = 1e-7;
+    for (double high = 1.002e-7; high < 300; low = high, high *= 1.002) {
+        sum += std::numbers::pi * (high * high - low * low) *
+               eval_beam_diffusion(beam, 0.5 * (low + high));
+    }
+    EXPECT_NEAR(beam_diffusion_tail(beam, 0), sum, 2e-4 * sum);
+    double beyond = 0;
+    low = 1;
+    for (double high = 1.001; high < 300; low = high, high *= 1.001) {
+        beyond += std::numbers::pi * (high * high - low * low) *
+                  eval_beam_diffusion(beam, 0.5 * (low + high));
+    }
+    EXPECT_NEAR(beam_diffusion_tail(beam, 1), beyond, 2e-4 * beyond);
+}
+
+TEST(BeamDiffusion, ReflectanceIsThatOfTheReferenceTable) {
+    // physics/README.md, "Half space", column "beams": R (1 - F_ext), to its three or four
+    // digits.
+    struct Row {
+        double eta, albedo, expected;
+    };
+    for (const Row& row : {Row{1.0, 0.80, 0.203}, Row{1.3, 0.30, 0.0091}, Row{1.3, 0.80, 0.1262},
+                           Row{1.3, 0.95, 0.3361}, Row{1.3, 0.99, 0.5743}, Row{1.5, 0.80, 0.0915},
+                           Row{1.5, 0.99, 0.4945}}) {
+        const BeamDiffusion beam = make_beam_diffusion(row.albedo, 1 - row.albedo, row.eta);
+        const double found = beam_diffusion_tail(beam, 0) * (1 - fresnel_moments(row.eta).external);
+        EXPECT_NEAR(found, row.expected, 6e-4 + 2e-3 * row.expected) << row.eta << row.albedo;
+    }
+}
+
+TEST(BeamDiffusion, WithoutScatteringThereIsNothing) {
+    const BeamDiffusion black = make_beam_diffusion(0, 1, 1.3);
+    EXPECT_EQ(eval_beam_diffusion(black, 0), 0);
+    EXPECT_EQ(beam_diffusion_tail(black, 0), 0);
+}
+
+DiffusionLength length_of(const tests::ReferenceRow& row) {
+    return std::map<std::string, DiffusionLength>{
+        {"searchlight", DiffusionLength::mean_free_path_searchlight},
+        {"diffuse", DiffusionLength::mean_free_path_diffuse},
+        {"dmfp", DiffusionLength::diffuse_mean_free_path}}
+        .at(row.input.at("param"));
+}
+
+TEST(NormalizedDiffusion, ShapeProfileAndIntegralAreThoseOfTheTable) {
+    using Row = tests::ReferenceRow;
+    const auto profile = [](const Row& row) {
+        return make_normalized_diffusion(row.number("albedo"), row.number("mfp"), length_of(row));
+    };
+    tests::expect_rows("nd_s", [](const Row& row) {
+        return normalized_diffusion_shape(row.number("albedo"), length_of(row));
+    });
+    tests::expect_rows("nd_R", [&](const Row& row) {
+        return eval_normalized_diffusion(profile(row), row.number("r"));
+    });
+    // The table's integral is of the profile with total 1.
+    tests::expect_rows("nd_cdf", [&](const Row& row) {
+        const auto p = profile(row);
+        return normalized_diffusion_within(p, row.number("r")) / p.albedo;
+    });
+}
+
+TEST(NormalizedDiffusion, TotalIsTheAlbedo) {
+    const auto p = make_normalized_diffusion(0.63, 2, DiffusionLength::mean_free_path_diffuse);
+    EXPECT_NEAR(normalized_diffusion_within(p, 1e4), 0.63, 1e-12);
+}
+
 }  // namespace
+
 }  // namespace opaline::bake

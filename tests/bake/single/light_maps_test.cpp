@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "bake/effects/single/gather_direction.h"
-#include "bake/effects/single/inner_triangles.h"
+#include "bake/effects/single/light_view.h"
 #include "tests/bake/single/single_support.h"
 
 namespace opaline::bake {

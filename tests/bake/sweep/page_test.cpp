@@ -158,16 +158,6 @@ TEST(ReportPage, NeedsNothingFromAnywhereElse) {
     }
 }
 
-// RFC 4648, section 10.
-TEST(ReportPage, Base64HasTheVectorsOfItsStandard) {
-    EXPECT_EQ(encode_base64(""), "");
-    EXPECT_EQ(encode_base64("f"), "Zg==");
-    EXPECT_EQ(encode_base64("fo"), "Zm8=");
-    EXPECT_EQ(encode_base64("foo"), "Zm9v");
-    EXPECT_EQ(encode_base64("foobar"), "Zm9vYmFy");
-    EXPECT_EQ(encode_base64(std::string("\xff\xef\x00", 3)), "/+8A");
-}
-
 TEST(Difference, IsBlueWhereDarkerVermilionWhereBrighterWhiteWhereEqual) {
     const runtime::Picture truth = grey(0.5f);
     const formats::Image8 darker = draw_difference(grey(0.4f), truth, 0.1);

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/holes.h"
-#include "runtime/normal_maps/normal_map.h"
+#include "runtime/surface.h"
 #include "runtime/normal_maps/turned_light.h"
 #include "runtime/texture.h"
 #include "tests/bench/gl_parity/comparisons.h"

@@ -1,4 +1,4 @@
-#include "bake/cli/view/orbit_camera.h"
+#include "bake/cli/view/view_state.h"
 
 #include <gtest/gtest.h>
 

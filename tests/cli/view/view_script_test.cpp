@@ -1,8 +1,13 @@
-#include "bake/cli/view/view_script.h"
-
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
-#include "bake/cli/view/orbit_camera.h"
+#include <filesystem>
+#include <fstream>
+
+#include "bake/cli/view/shown_file.h"
+#include "bake/cli/view/view_script.h"
+#include "bake/cli/view/view_state.h"
+#include "tests/support/temporary_folder.h"
 
 namespace opaline::cli {
 namespace {
@@ -109,5 +114,102 @@ TEST(DropFile, EndingAndPlaceSayWhatItIsFor) {
     EXPECT_FALSE(drop_file(state, "e.png", 0.1));
 }
 
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream(path) << text;
+}
+
+TEST(FileWatch, SaysOnceThatAFileChangedAndOnlyWhenItRests) {
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path path = folder / "file";
+    write_text(path, "a");
+    FileWatch watch(path);
+    EXPECT_FALSE(watch.look());
+    EXPECT_FALSE(watch.look());
+    write_text(path, "longer");
+    EXPECT_FALSE(watch.look()) << "it may still be written";
+    EXPECT_TRUE(watch.look());
+    EXPECT_FALSE(watch.look());
+}
+
+TEST(FileWatch, SeesAFileThatTookThePlaceOfAnother) {
+    const tests::TemporaryFolder folder;
+    const std::filesystem::path path = folder / "file", next = folder / "next";
+    write_text(path, "a");
+    FileWatch watch(path);
+    std::filesystem::remove(path);
+    EXPECT_FALSE(watch.look());
+    EXPECT_FALSE(watch.look()) << "a file that is gone has not changed";
+    write_text(next, "b");
+    std::filesystem::rename(next, path);
+    EXPECT_FALSE(watch.look());
+    EXPECT_TRUE(watch.look());
+}
+
+TEST(RenderLine, SaysNothingThatIsAsUsual) {
+    ViewState state;
+    state.width = 80;
+    state.height = 60;
+    EXPECT_EQ(render_line(state, "a.opal", {{0, 1, 2.5f}, {0, 0, 0}}, "a.png"),
+              "opaline render a.opal --light studio --size 80x60 --eye 0,1,2.5 --target 0,0,0 -o "
+              "a.png");
+}
+
+TEST(RenderLine, NamesAllThatWasChangedAndQuotesNames) {
+    ViewState state;
+    state.light = "my sky.exr";
+    state.fov = 50;
+    state.time = -3;
+    state.exposure = 0.1f;
+    state.tone_map = runtime::ToneMap::none;
+    state.coefficients = 20;
+    rotate_light_to(state, -90);
+    set_emitter(state, "Bob's lamp", {0.5f, 0, 1e-7f});
+    toggle_term(state, formats::TermSet::specular);
+    const std::string line =
+        render_line(state, "a.opal", {{1.1f, 0, 0}, {0, 0, 0}, {1, 0, 0}}, "b c.png");
+    EXPECT_EQ(line,
+              "opaline render a.opal --light 'my sky.exr' --size 1280x800 --eye 1.1,0,0 --target "
+              "0,0,0 --up 1,0,0 --fov 50 --rotate-light 270 --time -3 --terms "
+              "multiple,single,diffuse,volume-single,volume-multiple --coefficients 20 --emitter "
+              "'Bob'\\''s lamp=0.5,0,1e-07' --exposure 0.1 --tone-map none -o 'b c.png'");
+}
+
+TEST(RenderLine, ErrorsByReceiverNeedTheCameraAlone) {
+    ViewState state;
+    state.error_white = 0.05f;
+    state.exposure = 2;
+    state.coefficients = 12;
+    EXPECT_EQ(render_line(state, "a.opal", {{0, 1, 2.5f}, {0, 0, 0}}, "a.png"),
+              "opaline render a.opal --light studio --size 1280x800 --eye 0,1,2.5 --target 0,0,0 "
+              "--receiver-errors 0.05 -o a.png");
+}
+
+TEST(ViewState, AnEmitterAsAuthoredIsNoChange) {
+    ViewState state;
+    set_emitter(state, "Lamp", {2, 1, 1});
+    set_emitter(state, "Lamp", {0, 0, 0});
+    ASSERT_EQ(state.emitters.size(), 1u);
+    EXPECT_EQ(emitter_color(state, "Lamp"), (formats::Rgb{0, 0, 0}));
+    set_emitter(state, "Lamp", {1, 1, 1});
+    EXPECT_TRUE(state.emitters.empty());
+}
+
+// Exposure, tone mapper, split and controls change nothing that has to be drawn again.
+TEST(ViewState, RadianceIsThatOfTheFinishedPicture) {
+    const ViewState state;
+    ViewState look = state;
+    look.exposure = 3;
+    look.tone_map = runtime::ToneMap::none;
+    look.split = 0.1f;
+    look.panels = false;
+    EXPECT_TRUE(same_radiance(state, look));
+    look.terms = formats::TermSet::diffuse;
+    EXPECT_FALSE(same_radiance(state, look));
+    look = state;
+    look.error_white = 0.1f;
+    EXPECT_FALSE(same_radiance(state, look));
+}
+
 }  // namespace
+
 }  // namespace opaline::cli

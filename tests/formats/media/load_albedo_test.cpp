@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "formats/fill_grid.h"
-#include "formats/media/black_body.h"
+#include "formats/media/load_emission.h"
 #include "formats/media/load_volumes.h"
 #include "formats/vdb/write_vdb.h"
 #include "tests/formats/media/media_text.h"

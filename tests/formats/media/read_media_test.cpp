@@ -1,6 +1,10 @@
-#include "formats/media/read_media.h"
+#include <gmock/gmock.h>
 
+#include <algorithm>
+
+#include "formats/media/apply_media.h"
 #include "formats/media/presets.h"
+#include "formats/media/read_media.h"
 #include "tests/formats/media/media_text.h"
 
 namespace opaline::tests {
@@ -171,5 +175,69 @@ TEST(ReadMedia, MarbleTakesScaleAndColoursOfTheFile) {
     EXPECT_EQ(marble.colors, (std::vector<Rgb>{{0, 0.5f, 1}, {1, 0, 0}}));
 }
 
+using formats::media_preset;
+using formats::media_preset_names;
+
+TEST(MediaPresets, AllTwelveMeasuredMediaAreThereAndSound) {
+    ASSERT_EQ(media_preset_names().size(), 12u);
+    EXPECT_TRUE(std::is_sorted(media_preset_names().begin(), media_preset_names().end()));
+    for (const std::string_view name : media_preset_names()) {
+        const auto medium = media_preset(name);
+        ASSERT_TRUE(medium.has_value()) << name;
+        EXPECT_TRUE(is_sound(*medium)) << name;
+        EXPECT_EQ(medium->phase.type, PhaseFunction::Type::isotropic) << name;
+        EXPECT_EQ(medium->eta, name == "marble" ? 1.5f : 1.3f) << name;
+    }
+}
+
+TEST(MediaPresets, SkimMilkHasTwoSpellingsAndOtherNamesAreUnknown) {
+    EXPECT_EQ(media_preset("skimmilk")->sigma_s, media_preset("skim-milk")->sigma_s);
+    for (const char* name : {"", "Marble", "milk", "skin3"}) {
+        EXPECT_FALSE(media_preset(name).has_value()) << name;
+    }
+}
+
+using ::testing::HasSubstr;
+
+std::string refuse_groups(const std::string& emitters) {
+    const auto media = read_text_as_media("{\"emitters\": " + emitters + "}");
+    EXPECT_FALSE(media.has_value()) << emitters;
+    return faults(media);
+}
+
+TEST(EmitterGroups, AreReadWithoutMaterialsAndReplaceThoseOfTheScene) {
+    const auto media = read_text_as_media(
+        R"-({"emitters": {"Ceiling": ["Lamp", "Lamp (2)"], "Sun": "light 3"}})-");
+    ASSERT_TRUE(media.has_value()) << faults(media);
+    formats::Scene scene;
+    scene.materials.emplace_back();
+    scene.emitter_groups = {{"Old", {"Lamp"}}};
+    ASSERT_TRUE(formats::apply_media(*media, scene));
+    ASSERT_EQ(scene.emitter_groups.size(), 2u);
+    EXPECT_EQ(scene.emitter_groups[0].name, "Ceiling");
+    EXPECT_THAT(scene.emitter_groups[0].members, ElementsAre("Lamp", "Lamp (2)"));
+    EXPECT_THAT(scene.emitter_groups[1].members, ElementsAre("light 3"));
+
+    const auto other = read_text_as_media(R"({"materials": {}})");
+    ASSERT_TRUE(other.has_value()) << faults(other);
+    ASSERT_TRUE(formats::apply_media(*other, scene));
+    EXPECT_EQ(scene.emitter_groups.size(), 2u);
+}
+
+TEST(EmitterGroups, WhatCannotBeIsNamedWithItsPlace) {
+    EXPECT_THAT(refuse_groups("[]"), HasSubstr("emitters: it is not an object"));
+    EXPECT_THAT(refuse_groups(R"({"A": []})"), HasSubstr("emitters > A"));
+    EXPECT_THAT(refuse_groups(R"({"A": [1]})"), HasSubstr("a list of 1 to 4096 texts"));
+    EXPECT_THAT(refuse_groups(R"({"": ["x"]})"), HasSubstr("a group's name is empty"));
+    EXPECT_THAT(refuse_groups(R"({"a\u0007": ["x"]})"), HasSubstr("control characters"));
+    EXPECT_THAT(refuse_groups("{\"" + std::string(256, 'a') + R"(": ["x"]})"),
+                HasSubstr("255 bytes"));
+    EXPECT_THAT(refuse_groups(R"({"A": ["x", "x"]})"),
+                HasSubstr("emitters > A: the emitter 'x' is in the group 'A' already"));
+    EXPECT_THAT(refuse_groups(R"({"A": ["x"], "B": ["y", "x"]})"),
+                HasSubstr("emitters > B: the emitter 'x' is in the group 'A' already"));
+}
+
 }  // namespace
+
 }  // namespace opaline::tests

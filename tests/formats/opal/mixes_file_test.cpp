@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "formats/opal/layout.h"
-#include "tests/formats/opal/mix_fixture.h"
+#include "tests/formats/opal/slot_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
 
 namespace opaline::formats {

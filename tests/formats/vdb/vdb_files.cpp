@@ -8,7 +8,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "formats/vdb/check_transform.h"
+#include "formats/vdb/limits.h"
 
 namespace opaline::tests {
 namespace {

@@ -1,8 +1,8 @@
 #include "runtime/embed_gl/dot_batches.h"
+#include "runtime/embed_gl/spread_batches.h"
 
 #include <gtest/gtest.h>
 
-#include "runtime/embed_gl/spread_batches.h"
 #include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 

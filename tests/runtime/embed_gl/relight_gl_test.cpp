@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "tests/formats/opal/mix_fixture.h"
 #include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/embed_gl/gl_fixture.h"
 #define GL_GLEXT_PROTOTYPES

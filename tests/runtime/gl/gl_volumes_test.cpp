@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/embed_gl/volume_tables.h"
+#include "runtime/embed_gl/volume_textures.h"
 #include "tests/runtime/gl/gl_comparison.h"
 #include "tests/runtime/picture/synthetic_asset.h"
 #include "tests/runtime/volumes/glow_support.h"

@@ -1,5 +1,5 @@
 // Normal maps in pictures of the software renderer.
-#include "runtime/normal_maps/normal_map.h"
+#include "runtime/normal_maps/turned_light.h"
 
 #include <gtest/gtest.h>
 

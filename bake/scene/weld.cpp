@@ -1,4 +1,4 @@
-#include "bake/scene/weld_seams.h"
+#include "bake/scene/weld.h"
 
 #include <algorithm>
 #include <cmath>
