@@ -36,9 +36,9 @@ std::uint32_t wrap(std::int64_t i, std::int64_t size, TextureWrap mode) {
     return static_cast<std::uint32_t>(i);
 }
 
-}  // namespace
-
-glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv) {
+// What `value_of` makes of the codes of four texels, interpolated.
+template <class Value>
+auto interpolate(const ImageLookup& lookup, glm::vec2 uv, const Value& value_of) {
     const formats::Image8& image = lookup.image;
     constexpr float kLargest = 1e6f;
     if (!(std::abs(uv.x) < kLargest) || !(std::abs(uv.y) < kLargest)) {
@@ -56,13 +56,25 @@ glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv) {
             wrap(static_cast<std::int64_t>(x0) + dx, image.width, lookup.wrap_u);
         const std::uint32_t row =
             wrap(static_cast<std::int64_t>(y0) + dy, image.height, lookup.wrap_v);
-        const std::uint8_t* code = &image.rgba[4 * (std::size_t{row} * image.width + column)];
+        return value_of(&image.rgba[4 * (std::size_t{row} * image.width + column)]);
+    };
+    return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
+}
+
+}  // namespace
+
+glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv) {
+    return interpolate(lookup, uv, [&](const std::uint8_t* code) {
         if (lookup.is_linear) return glm::vec4(code[0], code[1], code[2], code[3]) / 255.0f;
         const auto& linear = linear_codes();
         return glm::vec4(linear[code[0]], linear[code[1]], linear[code[2]],
                          static_cast<float>(code[3]) / 255.0f);
-    };
-    return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
+    });
+}
+
+float sample_alpha(const ImageLookup& lookup, glm::vec2 uv) {
+    return interpolate(
+        lookup, uv, [](const std::uint8_t* code) { return static_cast<float>(code[3]) / 255.0f; });
 }
 
 }  // namespace opaline::bake
