@@ -89,7 +89,7 @@ Knobs fit_refinement(const EffectTable& effects, const formats::Scene& scene, Kn
 std::optional<formats::Diagnostic> describe_bound(const RefineReport& report) {
     // What errs by less passes unnoticed.
     constexpr double kNoticed = 0.1;
-    if (!report.is_bounded || (report.error_before > 0 && report.error_after < kNoticed)) {
+    if (!report.is_bounded() || (report.error_before > 0 && report.error_after < kNoticed)) {
         return std::nullopt;
     }
     const std::string left =
