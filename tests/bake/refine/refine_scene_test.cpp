@@ -91,8 +91,8 @@ TEST(RefineScene, TwoTrianglesUnderABallGetItsShadow) {
               found.scene->primitives[0].added.size() + found.scene->primitives[1].added.size());
 }
 
-// A picture shows the ball and what is around it, however far the ground goes on: 2 % within 2 m;
-// weighed by the area of all the ground, 15 %.
+// A picture shows the ball and what is around it, however far the ground goes on. Relative to all
+// of the ground's light the shadow would pass unnoticed.
 TEST(RefineScene, OpenGroundAroundDoesNotMakeAShadowCoarser) {
     const RefinedScene found = refine(ball_over_two_triangles(12), some_limits(0.05));
     ASSERT_TRUE(found.scene);
