@@ -126,7 +126,7 @@ Expectation expect(const formats::Scene& scene, const bake::Knobs& wanted,
     const bake::Knobs budget =
         bake::with_model_error(effects, wanted, bake::find_model_error(first));
     return {bake::predict_costs({effects, scene, result.facts, budget, machine.rates,
-                                 result.threads, extras.receiver_errors},
+                                 result.threads, extras.receiver_errors, result.refinement.rays},
                                 first),
             machine.note};
 }
@@ -198,7 +198,8 @@ int run(const BakeCommand& options) {
                                     result.knobs,
                                     machine.rates,
                                     result.threads,
-                                    options.extras.receiver_errors};
+                                    options.extras.receiver_errors,
+                                    result.refinement.rays};
     const bake::CostPrediction used = bake::predict_costs(request, result.plan);
     if (!options.report.empty()) {
         bake::predict_savings(request, result.plan);

@@ -63,11 +63,14 @@ int run(const PlanCommand& options) {
     context.threads = options.scene.bake.threads;
     const unsigned threads = bake::thread_count(context);
     bake::StageLog log;
+    const bool is_quick = is_quick_to_refine(imported.scene);
+    const bake::OrientedBodies bodies =
+        is_quick ? bake::orient_bodies(imported.scene) : bake::OrientedBodies{};
+    const formats::Scene& turned = bodies.scene ? *bodies.scene : imported.scene;
     const bake::RefinedScene refined =
-        is_quick_to_refine(imported.scene)
-            ? require(bake::refine_for_bake(imported.scene, knobs, context, log))
-            : bake::RefinedScene{};
-    const formats::Scene& dense = refined.scene ? *refined.scene : imported.scene;
+        is_quick ? require(bake::refine_for_bake(turned, knobs, context, log))
+                 : bake::RefinedScene{};
+    const formats::Scene& dense = refined.scene ? *refined.scene : turned;
     const auto evened =
         bake::takes_even_media(effects, knobs) ? bake::even_media(dense) : std::nullopt;
     const formats::Scene& scene = evened ? evened->scene : dense;
@@ -91,7 +94,13 @@ int run(const PlanCommand& options) {
     const bake::StageRates rates = bake::find_machine_rates().rates;
     const bake::Knobs budget =
         bake::with_model_error(effects, knobs, bake::find_model_error(plan.entries));
-    const bake::CostRequest request{effects, scene, plan.facts, budget, rates, threads};
+    const bake::CostRequest request{.effects = effects,
+                                    .scene = scene,
+                                    .facts = plan.facts,
+                                    .knobs = budget,
+                                    .rates = rates,
+                                    .threads = threads,
+                                    .refinement_rays = refined.report.rays};
     const bake::CostPrediction cost = bake::predict_costs(request, plan.entries);
     bake::predict_savings(request, plan.entries);
     fmt::print("{}", options.json

@@ -97,12 +97,43 @@ std::uint32_t most_terms(const formats::Asset& asset) {
 
 namespace {
 
+const char* end_name(bake::RefineEnd end) {
+    switch (end) {
+        case bake::RefineEnd::met:
+            return "met";
+        case bake::RefineEnd::receivers:
+            return "receivers";
+        case bake::RefineEnd::points:
+            return "points";
+        case bake::RefineEnd::edges:
+            return "edges";
+        case bake::RefineEnd::returns:
+            return "returns";
+    }
+    return "";
+}
+
+// What kept it from the error asked for; nothing where it was met.
+const char* describe_end(bake::RefineEnd end) {
+    switch (end) {
+        case bake::RefineEnd::met:
+            return "";
+        case bake::RefineEnd::receivers:
+            return "; --max-receivers ends it";
+        case bake::RefineEnd::points:
+            return "; the rest lies in small triangles of the scene";
+        case bake::RefineEnd::edges:
+            return "; the rest is narrower than edges may be";
+        case bake::RefineEnd::returns:
+            return "; more receivers would hardly lower that";
+    }
+    return "";
+}
+
 Json refinement_json(const bake::RefineReport& refined) {
-    return {{"receivers_given", refined.given},
-            {"receivers_added", refined.added},
-            {"error_before", refined.error_before},
-            {"error_after", refined.error_after},
-            {"bounded", refined.is_bounded}};
+    return {{"receivers_given", refined.given},     {"receivers_added", refined.added},
+            {"error_before", refined.error_before}, {"error_after", refined.error_after},
+            {"ended_by", end_name(refined.end)},    {"bounded", refined.is_bounded()}};
 }
 
 }  // namespace
@@ -234,8 +265,9 @@ std::string make_plan_table(const bake::Knobs& knobs, const bake::RefineReport& 
             fmt::format("receivers: {} of the scene and {} more", refined.given, refined.added);
         if (refined.error_before > 0) {
             table += fmt::format(
-                " where its light changes; between them it then errs by some {:.1f} %, not {:.1f}",
-                100 * refined.error_after, 100 * refined.error_before);
+                " where its light changes; between them it then errs by some {:.1f} %, not "
+                "{:.1f}{}",
+                100 * refined.error_after, 100 * refined.error_before, describe_end(refined.end));
         }
         table += "\n";
     }

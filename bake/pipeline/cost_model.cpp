@@ -48,10 +48,11 @@ void bill_layers(const CostRequest& request, Bill& bill) {
 }
 
 // Seconds: the rules, shells and the hierarchy of rays, a triangle; a vertex's clearance, and
-// whether it is hidden; whether it needs a row; all test lights, of which the rest is in the user's
-// cache.
+// whether it is hidden; a ray of refinement; whether a vertex needs a row; all test lights, of
+// which the rest is in the user's cache.
 constexpr double kPlanTriangle = 6.3e-7, kOrientTriangle = 7.6e-7;
-constexpr CostBySize kBuildTriangle{3.2e-7, 3.6e-7}, kPlaceReceiver{5.2e-6, 6.5e-6};
+constexpr CostBySize kBuildTriangle{3.2e-7, 3.6e-7}, kPlaceReceiver{5.2e-6, 6.5e-6},
+    kProxyRay{9e-8, 1.4e-7};
 constexpr double kSimplifyVertex = 5e-5, kTestLights = 5e-3;
 
 double count_vertices(const formats::Scene& scene) {
@@ -89,6 +90,11 @@ void bill_placing(const CostedBake& bake, bool has_lamps, Bill& bill) {
     }
     bill.open("bodies");
     bill.add({body_triangles * kOrientTriangle, 0});
+    if (bake.request.refinement_rays > 0) {
+        bill.open("refinement");
+        bill.add(
+            {0, static_cast<double>(bake.request.refinement_rays) * kProxyRay.at(facts.triangles)});
+    }
     if (bake.request.knobs.simplify && has_dense_meshes(scene)) {
         bill.open("simplification");
         bill.add({count_vertices(scene) * kSimplifyVertex, 0});

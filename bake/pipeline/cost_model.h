@@ -43,6 +43,8 @@ struct CostRequest {
     const StageRates& rates;
     unsigned threads = 1;          ///< >= 1
     bool receiver_errors = false;  ///< BakeExtras::receiver_errors: bytes of the file alone
+    /// RefineReport::rays, which the stage before the plan traced; 0: none.
+    std::uint64_t refinement_rays = 0;
 };
 
 /// Predicts the bake that `plan` decides on, knobs and all, on a machine of these rates, and fills

@@ -207,7 +207,7 @@ formats::Status bake_inspected(const BakeInputs& unlit, std::span<const Lamp> la
         result.error.not_measured.emplace_back(name);
     }
     for (formats::Diagnostic& warning :
-         describe_measured_error(bake.scene, knobs, result.error, result.refinement.is_bounded)) {
+         describe_measured_error(bake.scene, knobs, result.error, result.refinement.is_bounded())) {
         result.warnings.push_back(std::move(warning));
     }
     if (result.accuracy) {

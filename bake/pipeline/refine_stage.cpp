@@ -100,7 +100,7 @@ formats::Result<ShareReport> share_copies_for_bake(const Knobs& knobs, const Con
 std::optional<formats::Diagnostic> describe_bound(const RefineReport& report) {
     // What errs by less passes unnoticed.
     constexpr double kNoticed = 0.1;
-    if (!report.is_bounded || (report.error_before > 0 && report.error_after < kNoticed)) {
+    if (!report.is_bounded() || (report.error_before > 0 && report.error_after < kNoticed)) {
         return std::nullopt;
     }
     const std::string left =

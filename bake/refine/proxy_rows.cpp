@@ -10,6 +10,8 @@
 #include "bake/exchange/lamps/straight_light.h"
 #include "bake/physics/phase_series.h"
 #include "bake/receivers/surface_samples.h"
+#include "bake/scene/coverage.h"
+#include "bake/trace/block_irradiance.h"
 #include "bake/trace/hidden_receivers.h"
 #include "bake/trace/irradiance_transport.h"
 
@@ -55,7 +57,8 @@ ProxyTracer::ProxyTracer(const formats::Scene& scene, const RayScene& rays,
 
 ProxyRows ProxyTracer::no_rows() const {
     ProxyRows rows;
-    rows.cells = directions_[0].inverse_solid_angle.size();
+    rows.sides = std::ranges::any_of(scene_.materials, is_wall) ? 2 : 1;
+    rows.cells = rows.sides * directions_[0].inverse_solid_angle.size();
     rows.lamps = std::min(lamps_.size(), kMostLamps);
     return rows;
 }
@@ -90,7 +93,8 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
         scene_, make_surface_point(scene_, {point.primitive, point.first_index}, point.barycentric),
         0);
     const Receiver front = sample.receiver;
-    const bool is_hidden_there = !material.sheet && is_hidden(rays_, front);
+    const bool can_hide = !material.sheet || is_wall(material);
+    const bool is_hidden_there = can_hide && is_hidden(rays_, front);
     rows.hidden.push_back(is_hidden_there ? 1 : 0);
     std::array<std::vector<float>, 2> transport;
     transport.fill(std::vector<float>(rows.cells));
@@ -100,11 +104,15 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
         const glm::vec3 behind = 2.0f * sample.position - front.origin;
         const std::vector<float> through = see_through_volumes(sample.position);
         for (std::size_t estimate = 0; estimate < 2; ++estimate) {
-            std::vector<float>& own = transport[estimate];
+            const std::span<float> all = transport[estimate];
+            const std::span<float> own = all.first(rows.cells / rows.sides);
             traced += look_outside(front, estimate, own);
-            if (material.sheet) traced += look_outside({behind, -front.normal}, estimate, own);
-            for (std::size_t i = 0; i < through.size(); ++i) {
-                own[i] *= through[i];
+            if (material.sheet) {
+                traced += look_outside({behind, -front.normal}, estimate,
+                                       is_wall(material) ? all.last(own.size()) : own);
+            }
+            for (std::size_t i = 0; !through.empty() && i < all.size(); ++i) {
+                all[i] *= through[i % through.size()];
             }
             if (material.medium) {
                 traced += look_inside(reach_[number], {behind, -front.normal}, estimate, own);
@@ -112,9 +120,12 @@ std::uint64_t ProxyTracer::trace(const ProxyPoint& point, ProxyRows& rows) const
         }
         for (std::size_t i = 0; i < lamps_.size(); ++i) {
             for (std::uint32_t estimate = 0; estimate < 2; ++estimate) {
-                const glm::dvec3 light =
-                    straight_irradiance(rays_, lamps_[i], front, kLampSamples, traced, &volumes_,
-                                        estimate * kLampSamples);
+                const auto light_on = [&](const Receiver& side) {
+                    return straight_irradiance(rays_, lamps_[i], side, kLampSamples, traced,
+                                               &volumes_, estimate * kLampSamples);
+                };
+                glm::dvec3 light = light_on(front);
+                if (material.sheet) light += light_on({behind, -front.normal});
                 irradiance[estimate * rows.lamps + std::min(i, rows.lamps - 1)] +=
                     static_cast<float>(std::min(light.x + light.y + light.z, kBrightest));
             }

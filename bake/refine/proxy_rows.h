@@ -31,12 +31,15 @@ struct ProxyPoint {
 /// rounding to a few rays.
 ///  - toward the outside, the mean over the cell of V max(0, n.w), dimmed by volumes;
 ///  - through a thin wall, the same behind it;
+///  - of an opaque one (is_wall), the same behind it as a side of its own;
 ///  - into a medium, max(0, -n.w) T(d): d is how far [m] the body goes there, and T(d) =
 ///    e^(-sigma_eff d) / (1 + 3/4 sigma_s' d) what diffuses as far, with sigma_eff = sqrt(3 sigma_a
 ///    (sigma_a + sigma_s')).
-/// Of each lamp, its straight irradiance [lx] outside, twice, too.
+/// Of each lamp, its straight irradiance [lx] outside, of thin walls on both sides, twice, too.
 struct ProxyRows {
-    std::size_t cells = 0, lamps = 0;
+    std::size_t cells = 0;  ///< of all sides
+    std::size_t sides = 1;  ///< 2 of scenes with opaque walls; the second one of all else is black
+    std::size_t lamps = 0;
     std::vector<std::uint8_t> cell;    ///< of the first estimate, then of the second
     std::vector<float> lamp;           ///< likewise
     std::vector<std::uint8_t> hidden;  ///< 1: inside a closed body, where nobody sees it; all 0

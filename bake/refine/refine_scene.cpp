@@ -15,6 +15,7 @@ namespace {
 constexpr double kShare = 0.5;             // of the squared error that a round halves
 constexpr std::uint32_t kMostRounds = 64;  // an edge is halved after two or three
 constexpr std::size_t kFewPoints = 512;    // by which a dense mesh is known to need no more
+constexpr double kLeastPoints = 2048, kMostPoints = 65536;
 
 // Edges that are not halved any more [m].
 double shortest_edge(const formats::Scene& scene) {
@@ -46,6 +47,7 @@ struct RelativeErrors {
         }
         return std::sqrt(most);
     }
+    double worst_seen() const { return std::sqrt(std::max(0.0, std::ranges::max(seen))); }
 };
 
 bool is_met(const RelativeErrors& error, std::size_t column, double limit) {
@@ -102,8 +104,8 @@ struct RefineJob {
     RefineReport& report;
 
     bool is_full(std::uint64_t added) const {
-        report.is_bounded = report.is_bounded || added >= limits.most_added;
-        return report.is_bounded || context.cancelled();
+        if (added >= limits.most_added) report.end = RefineEnd::receivers;
+        return report.is_bounded() || context.cancelled();
     }
 };
 
@@ -144,6 +146,31 @@ bool halve_worst(const RefineJob& job, const RelativeErrors& error, WatchedMesh&
     return halved > 0;
 }
 
+// How the error falls with receivers: by the root of their number where shadows have edges, hardly
+// where each look finds what no receiver tells of, such as hair that shades hair.
+class Returns {
+  public:
+    // Whether twice as many receivers have lowered it by less than an eighth.
+    bool are_small(std::uint64_t added, double error) {
+        constexpr std::uint64_t kFew = 1000;  // at first errors rise, as more is seen
+        constexpr double kNoticed = 0.875;
+        const auto half =
+            std::ranges::find_if(rounds_.rbegin(), rounds_.rend(),
+                                 [&](const Round& round) { return 2 * round.added <= added; });
+        const bool found =
+            added >= kFew && half != rounds_.rend() && error > kNoticed * half->error;
+        rounds_.push_back({added, error});
+        return found;
+    }
+
+  private:
+    struct Round {
+        std::uint64_t added;
+        double error;
+    };
+    std::vector<Round> rounds_;
+};
+
 // How far the error has come from where it was to the limit, in per cent; 100 ends.
 void tell_progress(const RefineJob& job, double share) {
     if (!job.context.on_progress) return;
@@ -154,7 +181,7 @@ void tell_progress(const RefineJob& job, double share) {
 
 void halve_where_light_changes(const RefineJob& job, WatchedMesh& watched) {
     const double wanted = job.limits.probes_per_receiver * static_cast<double>(job.report.given);
-    const auto all = static_cast<std::size_t>(std::clamp(wanted, 256.0, 65536.0));
+    const auto all = static_cast<std::size_t>(std::clamp(wanted, kLeastPoints, kMostPoints));
     std::size_t points = std::min(all, kFewPoints);
     watched.look_first(points, job.limits.seed);
     RelativeErrors error = sum_errors(watched);
@@ -165,14 +192,27 @@ void halve_where_light_changes(const RefineJob& job, WatchedMesh& watched) {
         error = sum_errors(watched);
     }
     job.report.error_before = job.report.error_after = error.worst();
-    bool is_done = is_met(error, job.limits.error);
-    for (std::uint32_t round = 0; round < kMostRounds && !is_done; ++round) {
-        if (!halve_worst(job, error, watched)) return;
+    RefineEnd& end = job.report.end;
+    Returns returns;
+    for (std::uint32_t round = 0; round < kMostRounds && !is_met(error, job.limits.error);
+         ++round) {
+        if (job.report.is_bounded()) return;
+        if (!halve_worst(job, error, watched)) {
+            if (!job.report.is_bounded()) end = RefineEnd::edges;
+            return;
+        }
         watched.look_at_parts();
         if (job.context.cancelled()) return;
         const RelativeErrors before = std::exchange(error, sum_errors(watched));
-        is_done = is_met(error, job.limits.error) || is_stuck(before, error, job.limits.error);
         job.report.error_after = error.worst();
+        if (is_stuck(before, error, job.limits.error)) {
+            end = RefineEnd::points;
+            return;
+        }
+        if (returns.are_small(watched.mesh().added(), error.worst_seen())) {
+            end = RefineEnd::returns;
+            return;
+        }
         const double whole = std::log(job.report.error_before / job.limits.error);
         tell_progress(job, 0.99 * std::log(job.report.error_before / error.worst()) / whole);
     }

@@ -23,12 +23,23 @@ struct RefineLimits {
     std::uint64_t seed = 0;
 };
 
+/// Why no more receivers were added.
+enum class RefineEnd {
+    met,        ///< the error, or the length of edges
+    receivers,  ///< most_added
+    points,     ///< what errs too much lies in small triangles, at which no point looks
+    edges,      ///< triangles that err too much are a five-thousandth of the scene
+    returns     ///< twice as many receivers lowered the error by less than an eighth
+};
+
 /// What refinement did.
 struct RefineReport {
     std::uint64_t given = 0, added = 0;        ///< receivers
     double error_before = 0, error_after = 0;  ///< as of RefineLimits; 0 where edges decided
-    bool is_bounded = false;                   ///< most_added stopped it
+    RefineEnd end = RefineEnd::met;
     std::uint64_t rays = 0;
+
+    bool is_bounded() const { return end == RefineEnd::receivers; }
 };
 
 struct RefinedScene {
@@ -43,10 +54,9 @@ struct RefinedScene {
 /// First at points spread over all surfaces by area. Then, over and over, the triangles that hold
 /// half of the squared error, the worst ones first, are halved [Doerfler1996], and their parts are
 /// looked at: at the points that they inherit, and where these are fewer than two at the middle of
-/// their longest edge, whose row is its vertex's later. It ends when the error is met, at the limit
-/// of receivers, or where edges are a five-thousandth of the scene. Triangles of a dense mesh in
-/// which no point lies stay as they are. The result is the same for any number of threads; a
-/// cancelled context leaves it incomplete. `lamps`: whose light counts.
+/// their longest edge, whose row is its vertex's later. RefineEnd says when it ends. Triangles of a
+/// dense mesh in which no point lies stay as they are. The result is the same for any number of
+/// threads; a cancelled context leaves it incomplete. `lamps`: whose light counts.
 RefinedScene refine_scene(const formats::Scene& scene, const RayScene& rays,
                           std::span<const LampSources> lamps, const RefineLimits& limits,
                           const Context& context);

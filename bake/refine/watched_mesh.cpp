@@ -7,6 +7,7 @@
 
 #include "bake/base/rng.h"
 #include "bake/receivers/surface_points.h"
+#include "bake/scene/coverage.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -76,7 +77,9 @@ void WatchedMesh::look_first(std::size_t count, std::uint64_t seed) {
         const double area = share * static_cast<double>(own.looks.size());
         add_scaled(unseen_, std::max(0.0, area - mesh_.area(triangle)), own.error);
         for (const Look& look : own.looks) {
-            add_scaled(total_, share, square_beyond(rows_, solid_angle_, look.row, {}));
+            add_scaled(total_, share,
+                       is_ground(triangle) ? square_where_shaded(rows_, solid_angle_, look.row)
+                                           : square_beyond(rows_, solid_angle_, look.row, {}));
         }
     }
 }
@@ -160,6 +163,17 @@ void WatchedMesh::look_at(std::span<const std::uint32_t> triangles) {
         own.looks.push_back({weight_at(cut.share), at->second, true});
     }
     trace();
+}
+
+// Flat and opaque: its light changes by what shades it alone.
+bool WatchedMesh::is_ground(std::uint32_t triangle) const {
+    const formats::Primitive& p = mesh_.scene().primitives[mesh_[triangle].primitive];
+    const formats::Material& material = mesh_.scene().materials[p.material];
+    if (material.medium || (material.sheet && !is_wall(material))) return false;
+    constexpr float kFlat = 1e-3f;
+    const std::array<std::uint32_t, 3>& corner = mesh_[triangle].corner;
+    return p.normal.empty() || (glm::distance(p.normal[corner[0]], p.normal[corner[1]]) < kFlat &&
+                                glm::distance(p.normal[corner[0]], p.normal[corner[2]]) < kFlat);
 }
 
 // What light spreads over inside a medium changes less over a shorter way.

@@ -39,7 +39,8 @@ class WatchedMesh {
     /// Mean square; 0 where nothing of it is seen.
     const ErrorColumns& error(std::uint32_t triangle) const { return watched_[triangle].error; }
     double area() const { return area_; }  ///< of all surfaces [m^2]
-    /// Square of all light over the surface [m^2].
+    /// Square of all light over the surface [m^2], flat open ground left out
+    /// (square_where_shaded).
     const ErrorColumns& total() const { return total_; }
     /// Square of the error [m^2] where triangles are not watched, by what the others err by.
     const ErrorColumns& unseen() const { return unseen_; }
@@ -69,6 +70,7 @@ class WatchedMesh {
     float inset(std::uint32_t triangle) const;
     std::uint32_t await_row(std::uint32_t triangle, glm::vec3 weight);
     void look_at(std::span<const std::uint32_t> triangles);
+    bool is_ground(std::uint32_t triangle) const;
     double contrast(std::uint32_t triangle) const;
     ErrorColumns square_at(std::uint32_t triangle, const Look& look) const;
     void measure(std::span<const std::uint32_t> triangles);

@@ -109,7 +109,7 @@ float coverage_at(const Coverage& coverage, std::uint32_t triangle, float u, flo
         const glm::vec2 uv = weight[0] * coverage.texcoord[corner[0]] +
                              weight[1] * coverage.texcoord[corner[1]] +
                              weight[2] * coverage.texcoord[corner[2]];
-        alpha *= sample_image({*coverage.image, coverage.wrap_u, coverage.wrap_v, true}, uv).a;
+        alpha *= sample_alpha({*coverage.image, coverage.wrap_u, coverage.wrap_v, true}, uv);
     }
     if (coverage.mode == Material::AlphaMode::mask) return alpha < coverage.cutoff ? 0.0f : 1.0f;
     return alpha;

@@ -37,6 +37,31 @@ std::uint32_t wrap(std::int64_t i, std::int64_t size, TextureWrap mode) {
     return static_cast<std::uint32_t>(i);
 }
 
+// What `value_of` makes of the codes of four texels, interpolated.
+template <class Value>
+auto interpolate(const ImageLookup& lookup, glm::vec2 uv, const Value& value_of) {
+    const formats::Image8& image = lookup.image;
+    constexpr float kLargest = 1e6f;
+    if (!(std::abs(uv.x) < kLargest) || !(std::abs(uv.y) < kLargest)) {
+        uv = glm::vec2(0);
+    }
+    const auto place = [](float u, std::uint32_t size, TextureWrap mode) {
+        const float scaled = u * static_cast<float>(size);
+        return formats::is_nearest(mode) ? std::floor(scaled) : scaled - 0.5f;
+    };
+    const float x = place(uv.x, image.width, lookup.wrap_u);
+    const float y = place(uv.y, image.height, lookup.wrap_v);
+    const float x0 = std::floor(x), y0 = std::floor(y), s = x - x0, t = y - y0;
+    const auto at = [&](int dx, int dy) {
+        const std::uint32_t column =
+            wrap(static_cast<std::int64_t>(x0) + dx, image.width, lookup.wrap_u);
+        const std::uint32_t row =
+            wrap(static_cast<std::int64_t>(y0) + dy, image.height, lookup.wrap_v);
+        return value_of(&image.rgba[4 * (std::size_t{row} * image.width + column)]);
+    };
+    return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
+}
+
 }  // namespace
 
 TextureTaps texture_taps(const UvMoments& moments, glm::dvec2 resolution, int most_taps) {
@@ -61,30 +86,17 @@ TextureTaps texture_taps(const UvMoments& moments, glm::dvec2 resolution, int mo
 }
 
 glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv) {
-    const formats::Image8& image = lookup.image;
-    constexpr float kLargest = 1e6f;
-    if (!(std::abs(uv.x) < kLargest) || !(std::abs(uv.y) < kLargest)) {
-        uv = glm::vec2(0);
-    }
-    const auto place = [](float u, std::uint32_t size, TextureWrap mode) {
-        const float scaled = u * static_cast<float>(size);
-        return formats::is_nearest(mode) ? std::floor(scaled) : scaled - 0.5f;
-    };
-    const float x = place(uv.x, image.width, lookup.wrap_u);
-    const float y = place(uv.y, image.height, lookup.wrap_v);
-    const float x0 = std::floor(x), y0 = std::floor(y), s = x - x0, t = y - y0;
-    const auto at = [&](int dx, int dy) {
-        const std::uint32_t column =
-            wrap(static_cast<std::int64_t>(x0) + dx, image.width, lookup.wrap_u);
-        const std::uint32_t row =
-            wrap(static_cast<std::int64_t>(y0) + dy, image.height, lookup.wrap_v);
-        const std::uint8_t* code = &image.rgba[4 * (std::size_t{row} * image.width + column)];
+    return interpolate(lookup, uv, [&](const std::uint8_t* code) {
         if (lookup.is_linear) return glm::vec4(code[0], code[1], code[2], code[3]) / 255.0f;
         const auto& linear = linear_codes();
         return glm::vec4(linear[code[0]], linear[code[1]], linear[code[2]],
                          static_cast<float>(code[3]) / 255.0f);
-    };
-    return (1 - t) * ((1 - s) * at(0, 0) + s * at(1, 0)) + t * ((1 - s) * at(0, 1) + s * at(1, 1));
+    });
+}
+
+float sample_alpha(const ImageLookup& lookup, glm::vec2 uv) {
+    return interpolate(
+        lookup, uv, [](const std::uint8_t* code) { return static_cast<float>(code[3]) / 255.0f; });
 }
 
 }  // namespace opaline::bake

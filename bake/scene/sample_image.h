@@ -48,4 +48,7 @@ struct ImageLookup {
 /// million sample at 0: there, floats do not resolve texels.
 glm::vec4 sample_image(const ImageLookup& lookup, glm::vec2 uv);
 
+/// Its alpha alone.
+float sample_alpha(const ImageLookup& lookup, glm::vec2 uv);
+
 }  // namespace opaline::bake

@@ -82,6 +82,36 @@ TEST(Prediction, EveryKindOfSceneHasTheStagesThatWerePredicted) {
     }
 }
 
+TEST(Prediction, RefinementIsAStageOfTheRaysThatItTraced) {
+    bake::BakeOptions options = small_bake();
+    options.refine.mode = bake::RefineChoice::Mode::where_light_changes;
+    const Scene scene = make_scene(
+        {make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}), make_sphere(3, 0.3f, {0.3f, 0.4f, 0.2f})});
+    const bake::BakeResult result = bake_scene(scene, options);
+    ASSERT_TRUE(result.scene);
+    const bake::Knobs knobs = *bake::resolve_knobs(options);
+    std::vector<bake::PlanEntry> plan = result.plan;
+    const bake::CostPrediction cost =
+        bake::predict_costs({.effects = bake::all_effects(),
+                             .scene = *result.scene,
+                             .facts = result.facts,
+                             .knobs = knobs,
+                             .rates = bake::StageRates{},
+                             .threads = 1,
+                             .refinement_rays = result.refinement.rays},
+                            plan);
+    std::vector<std::string> predicted, reported;
+    for (const bake::StageCost& stage : cost.stages) {
+        predicted.push_back(stage.name);
+        EXPECT_TRUE(stage.name != "refinement" || stage.work > 0);
+    }
+    for (const bake::StageReport& stage : result.stages) {
+        reported.push_back(stage.name);
+    }
+    EXPECT_EQ(predicted, reported);
+    EXPECT_EQ(std::ranges::count(reported, "refinement"), 1);
+}
+
 TEST(Prediction, SecondsAndBytesOfVolumesBelongToTheirDecisions) {
     Scene scene;
     scene.materials.resize(1);

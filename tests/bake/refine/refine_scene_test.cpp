@@ -5,6 +5,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 #include <numeric>
 
+#include "bake/base/rng.h"
 #include "bake/receivers/body_points.h"
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/vertex_receivers.h"
@@ -41,12 +42,15 @@ RefinedScene refine(const Scene& scene, const RefineLimits& limits, unsigned thr
     return refine_scene(scene, rays, lamps, limits, context);
 }
 
-// Relative RMS, over a primitive's surface, of what vertices interpolate of a function.
+// Relative RMS, over a primitive's surface, of what vertices interpolate of a function; as far as
+// x and z are `within` [m].
 template <class Function>
-double interpolation_error(const Scene& scene, std::uint32_t primitive, Function&& exact) {
+double interpolation_error(const Scene& scene, std::uint32_t primitive, Function&& exact,
+                           float within = 1e30f) {
     const AreaTable table = make_area_table(scene, {primitive});
     double error = 0, sum = 0;
     for (const SurfacePoint& at : scatter_points(scene, table, 5000, false, 1)) {
+        if (std::max(std::abs(at.position.x), std::abs(at.position.z)) > within) continue;
         const formats::Primitive& p = scene.primitives[primitive];
         double found = 0;
         for (std::uint32_t k = 0; k < 3; ++k) {
@@ -61,9 +65,10 @@ double interpolation_error(const Scene& scene, std::uint32_t primitive, Function
 }
 
 constexpr float kRadius = 0.3f, kHeight = 0.4f;
-Scene ball_over_two_triangles() {
-    return tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0}),
-                              tests::make_sphere(3, kRadius, {0.3f, kHeight, 0.2f})});
+Scene ball_over_two_triangles(float half = 2) {
+    return tests::make_scene(
+        {tests::make_quad({-half, 0, -half}, {0, 0, 2 * half}, {2 * half, 0, 0}),
+         tests::make_sphere(3, kRadius, {0.3f, kHeight, 0.2f})});
 }
 
 // Irradiance of the even sky over pi: what the ball leaves, whose form factor is (r/d)^2 h/d.
@@ -84,6 +89,47 @@ TEST(RefineScene, TwoTrianglesUnderABallGetItsShadow) {
     EXPECT_LT(found.report.added, 1500u);  // an even grid as good as theirs has 60 x 60
     EXPECT_EQ(found.report.added,
               found.scene->primitives[0].added.size() + found.scene->primitives[1].added.size());
+}
+
+// A picture shows the ball and what is around it, however far the ground goes on. Relative to all
+// of the ground's light the shadow would pass unnoticed.
+TEST(RefineScene, OpenGroundAroundDoesNotMakeAShadowCoarser) {
+    const RefinedScene found = refine(ball_over_two_triangles(12), some_limits(0.05));
+    ASSERT_TRUE(found.scene);
+    EXPECT_LT(interpolation_error(*found.scene, 0, open_share, 2), 0.03);
+    EXPECT_LT(found.report.added, 1500u);
+}
+
+// Below a floor of one side there is nothing; below an opaque wall there is open sky, which is not
+// shaded.
+TEST(RefineScene, AWallIsDividedAsAFloorOfOneSideIs) {
+    Scene scene = ball_over_two_triangles();
+    const std::uint64_t floor = refine(scene, some_limits(0.04)).report.added;
+    scene.materials.resize(2);
+    scene.primitives[0].material = 1;
+    scene.materials[1].sheet = formats::Sheet{};
+    const std::uint64_t wall = refine(scene, some_limits(0.04)).report.added;
+    EXPECT_GT(floor, 100u);
+    EXPECT_GT(static_cast<double>(wall), 0.8 * static_cast<double>(floor));
+    EXPECT_LT(static_cast<double>(wall), 1.25 * static_cast<double>(floor));
+}
+
+// Cards that shade each other in random order: each receiver sees another world.
+TEST(RefineScene, EndsWhereMoreReceiversHardlyLowerTheError) {
+    std::vector<formats::Primitive> cards;
+    const auto any = [](std::uint64_t number) {
+        const std::array<float, 4> u = random_uniform(1, RandomStage::refine_probes, number);
+        return glm::vec3(u[0], u[1], u[2]) - 0.5f;
+    };
+    for (std::uint64_t i = 0; i < 300; ++i) {
+        const glm::vec3 a = 0.4f * glm::normalize(any(3 * i));
+        cards.push_back(tests::make_quad(any(3 * i + 1), a, glm::cross(a, any(3 * i + 2))));
+    }
+    Scene scene = tests::make_scene(std::move(cards));
+    scene.materials[0].sheet = formats::Sheet{};
+    RefineLimits limits = some_limits(0.02);
+    limits.most_added = 4000;
+    EXPECT_EQ(refine(scene, limits).report.end, RefineEnd::returns);
 }
 
 // 500; by one estimate of each row alone 37,000.
@@ -150,6 +196,17 @@ TEST(RefineScene, ALampCloseToAFloorGetsReceiversBelowIt) {
     EXPECT_LT(error, 0.06);
 }
 
+TEST(RefineScene, ALampBehindAWallCounts) {
+    Scene scene = tests::make_scene({tests::make_quad({-2, 0, -2}, {0, 0, 4}, {4, 0, 0})});
+    formats::Light lamp;
+    lamp.name = "lamp";
+    lamp.position = {0.5f, -0.4f, 0.1f};
+    scene.lights = {lamp};
+    EXPECT_FALSE(refine(scene, some_limits(0.05)).scene);
+    scene.materials[0].sheet = formats::Sheet{};
+    EXPECT_GT(refine(scene, some_limits(0.05)).report.added, 30u);
+}
+
 // A lamp as wide as what hides it: half of the floor lies in its penumbra, which a few rays see in
 // steps. 300 receivers; by one estimate 43,000.
 TEST(RefineScene, StepsOfAPenumbraSeenByAFewRaysAddFewReceivers) {
@@ -177,7 +234,7 @@ TEST(RefineScene, TheLimitOfReceiversHolds) {
     RefineLimits limits = some_limits(0.01);
     limits.most_added = 100;
     const RefinedScene found = refine(ball_over_two_triangles(), limits);
-    EXPECT_TRUE(found.report.is_bounded);
+    EXPECT_TRUE(found.report.is_bounded());
     EXPECT_GE(found.report.added, 100u);
     EXPECT_LE(found.report.added, 110u);  // neighbours of the last one are halved with it
 }
