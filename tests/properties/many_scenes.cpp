@@ -241,7 +241,9 @@ int run(int count, char** argument) {
         const SceneWords scene = first_word.find(';') == first_word.npos
                                      ? random_scene(std::stoull(first_word))
                                      : parse_scene(first_word);
-        std::printf("%s\n%s", describe(scene).c_str(), inspect(scene).c_str());
+        std::printf("%s\n", describe(scene).c_str());
+        std::fflush(stdout);  // before what may hang
+        std::printf("%s", inspect(scene).c_str());
         std::fflush(stdout);
         const std::string fault = judge_apart(scene);
         std::printf("%s\n", fault.empty() ? "right" : fault.c_str());

@@ -66,6 +66,17 @@ BallMeans means_of(const bake::BallBank& bank, float radius) {
 // |x|^2 + 2 (x . w - L) / (1 - g) keep their means: w turns by a factor g on average at every
 // scattering, x moves by w, and scatterings are a Poisson process in the length L. So their means
 // at the exit are those at the start, whatever the phase function.
+void expect_conserved_moments(const BallMeans& means, double g, double times) {
+    const double r = means.radius, few = times / std::sqrt(double{bake::BallBank::kRecords});
+    EXPECT_NEAR(means.straight, std::exp(-r), few * std::sqrt(std::exp(-r)));
+    EXPECT_NEAR(means.along + means.leaves / (1 - g), 1 / (1 - g), few * (r + 1 / (1 - g)))
+        << g << " " << r;
+    const double expected = 0.5 * (1 - g) * (r * r + 2 * means.outward / (1 - g));
+    EXPECT_NEAR(means.length / expected, 1, few) << g << " " << r;
+    EXPECT_NEAR(means.scatterings, means.length, few * std::sqrt(means.length));
+    EXPECT_NEAR(means.variance / means.length, 1, 0.1) << g << " " << r;
+}
+
 TEST(BallBank, MomentsOfExitsAreThoseThatTransportConserves) {
     const std::array<std::pair<bake::PhaseTable, double>, 5> phases{
         {{make_phase(formats::PhaseFunction::Type::isotropic, 0), 0.0},
@@ -78,30 +89,38 @@ TEST(BallBank, MomentsOfExitsAreThoseThatTransportConserves) {
         EXPECT_EQ(bank.radii(), 9u);
         for (const float wanted : {1.5f, 4.0f, 9.6f}) {
             const BallMeans means = means_of(bank, wanted);
-            const double r = means.radius, few = 4 / std::sqrt(double{bake::BallBank::kRecords});
-            EXPECT_LE(r, static_cast<double>(wanted) * (1 + 1e-6));
-            EXPECT_GT(r, static_cast<double>(wanted) / 1.27);
-            EXPECT_NEAR(means.straight, std::exp(-r), few * std::sqrt(std::exp(-r)));
-            EXPECT_NEAR(means.along + means.leaves / (1 - g), 1 / (1 - g), few * (r + 1 / (1 - g)))
-                << g << " " << r;
-            const double expected = 0.5 * (1 - g) * (r * r + 2 * means.outward / (1 - g));
-            EXPECT_NEAR(means.length / expected, 1, few) << g << " " << r;
-            EXPECT_NEAR(means.scatterings, means.length, few * std::sqrt(means.length));
-            EXPECT_NEAR(means.variance / means.length, 1, 0.1) << g << " " << r;
+            EXPECT_LE(means.radius, static_cast<double>(wanted) * (1 + 1e-6));
+            EXPECT_GT(means.radius, static_cast<double>(wanted) / 1.27);
+            expect_conserved_moments(means, g, 4);
         }
     }
 }
 
-// Each radius has walks of r^2 / 2 scatterings and more.
+// Walks of balls that are too large to be followed event by event jump through smaller ones.
+TEST(BallBank, BallsMadeOfSmallerOnesConserveTheSameMoments) {
+    for (const double g : {-0.99, 0.0, 0.9, 0.99}) {
+        const bake::BallBank bank =
+            bake::make_ball_bank(henyey_greenstein(static_cast<float>(g)),
+                                 {.largest = 800, .events = 6e5, .jumps = 1e8, .seed = 3}, {});
+        ASSERT_EQ(bank.radii(), 28u) << g;
+        for (const float wanted : {20.0f, 100.0f, 768.0f}) {
+            expect_conserved_moments(means_of(bank, wanted), g, 4);
+        }
+    }
+}
+
+// Each radius has walks of r^2 / 2 scatterings and more, of which larger radii jump most.
 TEST(BallBank, HasNoRadiiWhoseWalksWouldHaveMoreEventsThanAllowed) {
     const bake::PhaseTable phase = make_phase(formats::PhaseFunction::Type::isotropic, 0);
-    const auto radii = [&](double events) {
-        return bake::make_ball_bank(phase, {.largest = 1e6, .events = events}, {}).radii();
+    const auto radii = [&](double events, double jumps) {
+        return bake::make_ball_bank(phase, {.largest = 1e6, .events = events, .jumps = jumps}, {})
+            .radii();
     };
-    EXPECT_EQ(radii(1), 0u);
-    const std::size_t some = radii(1e6);
+    EXPECT_EQ(radii(1, 1e9), 0u);
+    const std::size_t some = radii(1e6, 0);
     EXPECT_GT(some, 2u);
     EXPECT_LT(bake::BallBank::kRecords * 0.5 * std::pow(1.5 * std::exp2((some - 1.0) / 3), 2), 1e6);
+    EXPECT_EQ(radii(1e6, 1), some + 1);
     EXPECT_EQ(make_bank(phase, 1.4).radii(), 0u);
 }
 
@@ -140,6 +159,23 @@ TEST(BallWalk, LeavesDenseBodiesAsWalksWithoutBallsDo) {
     const auto slab = make_walked_body(make_wide_slab(12), make_forward_medium(1, 0.99f, 0, 1.4f));
     const BothLeave both = leave_both_ways(*slab, start_below({0, 0, 0}, {0, 1, 0}), 20000);
     expect_alike(both, "slab");
+}
+
+// Events of walks that follow each grow with the depth: 8 000 and 80 000 in the mean.
+TEST(BallWalk, TakesFewMoreStepsInABodyTenTimesAsDeep) {
+    for (const float g : {-0.99f, 0.99f}) {
+        for (const float depth : {1e3f, 1e4f}) {
+            const auto box =
+                make_walked_body(make_cube(1, false), make_forward_medium(depth, 1, g, 1.5f));
+            bake::add_balls(box->space, 1e5, 5, {});
+            constexpr std::uint32_t kWalks = 300;
+            const Leaving leaving =
+                walk_from(box->space, start_below({0.1f, 0.5f, 0.2f}, {0, 1, 0}), 1, kWalks);
+            EXPECT_EQ(leaving.counts.endless, 0u) << g << " " << depth;
+            EXPECT_LT(leaving.counts.events, kWalks * 800u) << g << " " << depth;
+            EXPECT_NEAR(leaving.all, 1, 4 * leaving.error) << g << " " << depth;
+        }
+    }
 }
 
 // Bands that fly differently, one that is not scattered in the core, through a coat and a core.

@@ -16,8 +16,19 @@ namespace {
 constexpr float kLeastBankRadius = 1.5f;
 constexpr double kStepsPerOctave = 3;
 
+// [mean free paths]. Scatterings, about the square of a radius, are whole numbers in 24 bits.
+constexpr double kLargest = 2048;
+
 // Starts of walks that belong to no site: a bank has 256 radii at most.
 constexpr std::uint32_t kFirstStart = 0xffff0000u;
+
+// Scatterings are a Poisson process along a long way. Sums of those of few records, drawn again and
+// again, would drift away from it.
+float draw_scatterings(float length, WalkRandom& random) {
+    const float radius = std::sqrt(-2 * std::log(1 - random.next()));
+    const float normal = radius * std::cos(2 * std::numbers::pi_v<float> * random.next());
+    return std::max(1.0f, std::round(length + std::sqrt(length) * normal));
+}
 
 }  // namespace
 
@@ -52,11 +63,22 @@ BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
         std::vector<Record> record;
         double events = 0;
     };
-    const auto walk = [&](float radius, WalkRandom& random, double& events) {
+    BallBank bank;
+    const auto walk = [&](float radius, bool jumps, WalkRandom& random, double& events) {
         glm::vec3 position(0), direction(0, 0, 1);
         Record record;
         for (;;) {
             ++events;
+            const float clearance = radius - glm::length(position);
+            if (jumps && clearance >= kLeastBankRadius) {
+                const float u = random.next();
+                const BallJump jump = bank.draw(clearance, direction, u, random.next());
+                position += jump.way;
+                direction = jump.direction;
+                record.length += jump.length;
+                record.scatterings += jump.scatterings;
+                continue;
+            }
             const float flight = -std::log(1 - random.next());
             const float b = glm::dot(position, direction);
             const float inside = std::max(0.0f, radius * radius - glm::dot(position, position));
@@ -72,6 +94,9 @@ BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
             const float u = random.next();
             direction = scatter(phase, direction, u, random.next());
         }
+        if (jumps && record.scatterings > 0) {
+            record.scatterings = draw_scatterings(record.length, random);
+        }
         const glm::vec3 place = glm::normalize(position);
         record.along = std::clamp(place.z, -1.0f, 1.0f);
         const float across = std::hypot(place.x, place.y);
@@ -80,12 +105,13 @@ BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
                             toward.x * direction.y - toward.y * direction.x, direction.z};
         return record;
     };
-    BallBank bank;
-    double events = 0, of_next = 2.0 * BallBank::kRecords;
+    double events = 0, jumping = 0, of_next = 2.0 * BallBank::kRecords;
     for (std::uint32_t k = 0; k < 256 && !context.cancelled(); ++k) {
         const auto radius =
             static_cast<float>(double{kLeastBankRadius} * std::exp2(k / kStepsPerOctave));
-        if (double{radius} > options.largest || events + of_next > options.events) {
+        const bool jumps = events + of_next > options.events;
+        if (double{radius} > std::min(kLargest, options.largest) ||
+            (jumps && (bank.radii() == 0 || jumping >= options.jumps))) {
             break;
         }
         double own = 0;
@@ -100,7 +126,7 @@ BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
                         {options.seed, RandomStage::body_walk,
                          kFirstStart + 256 * options.number + k, static_cast<std::uint32_t>(i)},
                         true);
-                    part.record.push_back(walk(radius, random, part.events));
+                    part.record.push_back(walk(radius, jumps, random, part.events));
                 }
                 return part;
             },
@@ -109,9 +135,11 @@ BallBank make_ball_bank(const PhaseTable& phase, const BallBankOptions& options,
                 records.insert(records.end(), part.record.begin(), part.record.end());
             });
         if (records.size() < BallBank::kRecords) break;
-        events += own;
-        of_next =
-            own * std::exp2(2 / kStepsPerOctave);  // in proportion to the square of the radius
+        (jumps ? jumping : events) += own;
+        if (!jumps) {
+            of_next =
+                own * std::exp2(2 / kStepsPerOctave);  // in proportion to the square of the radius
+        }
         bank.radius_.push_back(radius);
         bank.record_.insert(bank.record_.end(), records.begin(), records.end());
     }

@@ -83,7 +83,8 @@ class BallBank {
 
 struct BallBankOptions {
     double largest = 0;  ///< radius [mean free paths], at most
-    double events = 0;   ///< of the walks that make the records, about, at most
+    double events = 0;   ///< of the walks that make the records event by event, about, at most
+    double jumps = 0;    ///< the same of those for larger radii, that jump through smaller ones
     std::uint64_t seed = 0;
     std::uint32_t number = 0;  ///< of the bank, below 256: its random numbers
 };

@@ -13,10 +13,9 @@
 namespace opaline::bake {
 namespace {
 
-// The mean number of events in a cube of that diagonal as the albedo tends to 1 is
-// eta^2 4 V / (S mean_free_path escape) (README.md, "The estimator"); a hundred times that is no
-// walk that goes on for good.
-std::uint32_t most_events(std::span<const WalkMedium> media, float diagonal) {
+// Of walks in a cube of that diagonal as the albedo tends to 1: eta^2 4 V / (S mean_free_path
+// escape) (README.md, "The estimator").
+double mean_events(std::span<const WalkMedium> media, float diagonal) {
     float densest = 0;
     double escape = 1, eta = 0;
     for (const WalkMedium& medium : media) {
@@ -24,9 +23,8 @@ std::uint32_t most_events(std::span<const WalkMedium> media, float diagonal) {
         eta = std::max(eta, static_cast<double>(medium.eta));
         escape = std::min(escape, 1 - fresnel_moments(static_cast<double>(medium.eta)).external);
     }
-    const double mean =
-        std::max(1.0, eta * eta) * static_cast<double>(diagonal * densest) / std::max(1e-3, escape);
-    return static_cast<std::uint32_t>(std::min(1000 + 100 * mean, 200000.0));
+    return std::max(1.0, eta * eta) * static_cast<double>(diagonal) * static_cast<double>(densest) /
+           std::max(1e-3, escape);
 }
 
 int count_along(const WalkSpace& space, glm::vec3 point, glm::vec3 direction) {
@@ -170,7 +168,10 @@ WalkSpace make_walk_space(const formats::Scene& scene, const EmbreeScene& triang
     space.clearance = ClearanceGrid(scene, 0.5f * (space.low + space.high),
                                     0.5f * (space.high - space.low), kCell * diagonal);
     space.cell = kCell * diagonal;
-    space.most_events = most_events(space.media, diagonal);
+    space.mean_events = mean_events(space.media, diagonal);
+    // A hundred times the mean is no walk that goes on for good.
+    space.most_events =
+        static_cast<std::uint32_t>(std::min(1000 + 100 * space.mean_events, 200000.0));
     return space;
 }
 

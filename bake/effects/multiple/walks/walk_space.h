@@ -88,6 +88,7 @@ struct WalkSpace {
     std::vector<std::shared_ptr<const BallBank>> balls;
     glm::vec3 low{0}, high{0};        ///< box around these bodies [m], a little wider
     std::uint32_t diffuse_after = 0;  ///< scatterings that leave nothing of a direction
+    double mean_events = 0;           ///< of a walk that follows each, about; more than it needs
     /// More scatterings and reflections than any walk needs but one in thousands.
     std::uint32_t most_events = 0;
 };

@@ -315,8 +315,11 @@ double largest_ball(double albedo, double g, double size) {
 }
 
 void add_balls(WalkSpace& space, double walks, std::uint64_t seed, const Context& context) {
-    // Events of a bank for each walk, which has tens or more, and a second or two in all.
-    constexpr double kShare = 2, kMostEvents = 5e7;
+    // Events of a bank for each walk, which has tens or more, or a part of all that walks may have,
+    // and a second or two in all.
+    constexpr double kShare = 2, kPart = 0.01, kMostEvents = 5e7;
+    constexpr double kJumpingPart = 0.1, kMostJumps = 1.5e7;
+    const double expected = walks * space.mean_events;
     constexpr std::size_t kMostBanks = 8;  // of different phase functions
     space.balls.assign(space.media.size(), nullptr);
     std::vector<std::size_t> banked;
@@ -332,13 +335,14 @@ void add_balls(WalkSpace& space, double walks, std::uint64_t seed, const Context
             continue;
         }
         if (banked.size() == kMostBanks) continue;
-        auto bank = std::make_shared<const BallBank>(
-            make_ball_bank(medium.phase,
-                           {.largest = largest,
-                            .events = std::min(kShare * walks, kMostEvents),
-                            .seed = seed,
-                            .number = static_cast<std::uint32_t>(banked.size())},
-                           context));
+        auto bank = std::make_shared<const BallBank>(make_ball_bank(
+            medium.phase,
+            {.largest = largest,
+             .events = std::min(std::max(kShare * walks, kPart * expected), kMostEvents),
+             .jumps = std::min(kJumpingPart * expected, kMostJumps),
+             .seed = seed,
+             .number = static_cast<std::uint32_t>(banked.size())},
+            context));
         if (bank->radii() > 0) {
             space.balls[m] = std::move(bank);
             banked.push_back(m);
