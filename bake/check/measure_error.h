@@ -9,8 +9,8 @@
 
 #include "bake/effects/rows/subject_states.h"
 #include "bake/effects/volumes/complete_rows.h"
-#include "bake/lights/test_lights.h"
 #include "bake/lights/luminance.h"
+#include "bake/lights/test_lights.h"
 #include "formats/opal/asset.h"
 
 namespace opaline::bake {

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "bake/base/stage_log.h"
-#include "bake/cli/progress.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/outputs.h"
-#include "runtime/picture/tone_map.h"
+#include "bake/cli/progress.h"
 #include "runtime/picture/software_renderer.h"
+#include "runtime/picture/tone_map.h"
 #include "runtime/shade.h"
 #include "runtime/volumes/relight_volumes.h"
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <utility>
 
-#include "bake/cli/progress.h"
 #include "bake/cli/machine_limits.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
+#include "bake/cli/progress.h"
 #include "bake/physics/mie/mie_series.h"
 
 namespace opaline::cli {

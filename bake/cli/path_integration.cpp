@@ -4,8 +4,8 @@
 
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
-#include "bake/cli/reference_options.h"
 #include "bake/cli/outputs.h"
+#include "bake/cli/reference_options.h"
 #include "bake/lab/path_images/path_image.h"
 
 namespace opaline::cli {

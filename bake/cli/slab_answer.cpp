@@ -6,10 +6,10 @@
 #include <utility>
 #include <vector>
 
-#include "bake/cli/progress.h"
 #include "bake/cli/machine_limits.h"
 #include "bake/cli/messages.h"
 #include "bake/cli/option_values.h"
+#include "bake/cli/progress.h"
 #include "bake/cli/slab_views.h"
 #include "bake/physics/phase_series.h"
 #include "bake/physics/slab/column_model.h"

@@ -4,7 +4,7 @@
 
 #include "bake/physics/mie/angular_table.h"
 #include "bake/physics/slab/radiance_table.h"
-#include "bake/physics/slab/streams.h"
+#include "bake/physics/slab/slab_medium.h"
 #include "formats/scene.h"
 
 namespace opaline::cli {

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <numbers>
 
-#include "bake/exchange/lamp_bounces.h"
 #include "bake/exchange/exchange_points.h"
+#include "bake/exchange/lamp_bounces.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {

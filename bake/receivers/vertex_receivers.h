@@ -29,8 +29,8 @@ std::vector<Receiver> make_vertex_receivers(const formats::Scene& scene);
 /// one, for coordinates up to `magnitude` [m], in the frame that rays run in.
 float intersection_error_bound(float magnitude);
 
-/// The receiver as a copy of its mesh has it (formats::CopyOf): moved, and in front of its triangles
-/// whatever its coordinates round to there.
+/// The receiver as a copy of its mesh has it (formats::CopyOf): moved, and in front of its
+/// triangles whatever its coordinates round to there.
 Receiver moved(const Receiver& receiver, glm::vec3 offset);
 
 /// The same bound for a ray that starts at `position` and triangles whose corners differ from it by

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/reference/glossy_brdf.h"
 #include "bake/reference/ggx.h"
+#include "bake/reference/glossy_brdf.h"
 
 namespace opaline::bake {
 namespace {

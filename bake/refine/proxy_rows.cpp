@@ -11,7 +11,6 @@
 #include "bake/physics/phase_series.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/scene/coverage.h"
-#include "bake/trace/block_irradiance.h"
 #include "bake/trace/hidden_receivers.h"
 #include "bake/trace/irradiance_transport.h"
 

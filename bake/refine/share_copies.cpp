@@ -20,7 +20,6 @@
 #include "bake/receivers/vertex_receivers.h"
 #include "bake/scene/base_color.h"
 #include "bake/scene/copies.h"
-#include "bake/scene/emission.h"
 #include "bake/trace/packet_lane.h"
 #include "formats/opal/copies.h"
 

@@ -7,8 +7,8 @@
 namespace opaline::bake {
 
 /// The bodies around a point. Where several overlap, the one whose material is the last in their
-/// order (scene/nested_media.h) fills the space; a surface of any other is none there. Bodies of one
-/// material are counted.
+/// order (scene/nested_media.h) fills the space; a surface of any other is none there. Bodies of
+/// one material are counted.
 class MediumStack {
   public:
     static constexpr std::size_t kCapacity = 12;  ///< materials

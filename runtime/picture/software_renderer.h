@@ -43,9 +43,9 @@ struct SoftwareOptions {
 /// translucent vertices sum_k h_k(w_o') <T_k, L> toward the camera's eye (`shade` with `base_color`
 /// and `fresnel` false and that eye). It is interpolated with perspective correction, like base
 /// colour, normal and openness; each sample is then shaded as surface.h says, with images sampled
-/// bilinearly, and with the normal of its map where it has one (turned_light.h). Triangles show from
-/// both sides; diffuse ones are shaded alike, translucent and glossy ones face away with one of
-/// them unless they are double-sided. Where no triangle is seen stands the radiance of the
+/// bilinearly, and with the normal of its map where it has one (turned_light.h). Triangles show
+/// from both sides; diffuse ones are shaded alike, translucent and glossy ones face away with one
+/// of them unless they are double-sided. Where no triangle is seen stands the radiance of the
 /// environment, turned by `rotation` like the light. Volumes are marched up to what a sample sees
 /// (volume_pass.h), before a black background too. A cloud layer stands with its ground between the
 /// eye and that (layer_pass.h). Depth and clipping: what is nearest, from the near plane on.

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bake/effects/interreflection/interreflection_knobs.h"
+#include "bake/effects/interreflection/interreflection.h"
 #include "bake/scene/copies.h"
 #include "tests/formats/opal/opal_bytes.h"
 #include "tests/support/bake.h"

@@ -3,12 +3,12 @@
 #include <limits>
 #include <numbers>
 
+#include "bake/physics/path_integral/grid_medium.h"
 #include "bake/physics/path_integral/quasi_path.h"
 #include "bake/physics/path_integral/turn.h"
-#include "bake/physics/path_integral/grid_medium.h"
 #include "bake/physics/path_integral/zonal_table.h"
-#include "bake/physics/phase_series.h"
 #include "bake/physics/phase.h"
+#include "bake/physics/phase_series.h"
 #include "tests/stability/naive_forms.h"
 #include "tests/stability/stability_row.h"
 

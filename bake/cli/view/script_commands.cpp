@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "bake/cli/view/view_state.h"
 #include "bake/cli/view/view_script.h"
+#include "bake/cli/view/view_state.h"
 #include "formats/opal/terms.h"
 
 namespace opaline::cli {

@@ -10,7 +10,7 @@
 #include "bake/physics/mie/forward_peak.h"
 #include "bake/physics/mie/phase_texture.h"
 #include "bake/physics/slab/radiance_table.h"
-#include "bake/physics/slab/streams.h"
+#include "bake/physics/slab/slab_medium.h"
 #include "formats/opal/clouds.h"
 #include "formats/opal/result.h"
 #include "formats/scene.h"

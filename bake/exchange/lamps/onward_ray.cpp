@@ -5,8 +5,8 @@
 
 #include "bake/physics/fresnel.h"
 #include "bake/physics/path_differentials/axis_frame.h"
-#include "bake/physics/path_differentials/surface_shape.h"
 #include "bake/physics/path_differentials/lobe.h"
+#include "bake/physics/path_differentials/surface_shape.h"
 #include "bake/scene/base_color.h"
 #include "bake/trace/packet_lane.h"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "bake/physics/slab/radiance_table.h"
-#include "bake/physics/slab/streams.h"
+#include "bake/physics/slab/slab_medium.h"
 
 namespace opaline::bake {
 

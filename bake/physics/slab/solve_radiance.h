@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "bake/physics/slab/streams.h"
+#include "bake/physics/slab/slab_medium.h"
 
 namespace opaline::bake {
 

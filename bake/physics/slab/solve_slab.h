@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "bake/physics/slab/streams.h"
+#include "bake/physics/slab/slab_medium.h"
 
 namespace opaline::bake {
 

@@ -4,16 +4,9 @@
 #include <span>
 #include <vector>
 
-namespace opaline::bake {
+#include "bake/physics/slab/slab_medium.h"
 
-/// What a plane slab is made of: homogeneous.
-struct SlabMedium {
-    /// Legendre moments of the phase function, as PhaseSeries::lambda: p(cos) =
-    /// sum_l (2 l + 1) / (4 pi) moment[l] P_l(cos) integrates to 1 over the sphere, moment[0] = 1,
-    /// moment[1] is the mean cosine. Those past the end are 0.
-    std::vector<double> moment{1.0};
-    double albedo = 1;  ///< share of the extinction that scatters, in [0, 1]
-};
+namespace opaline::bake {
 
 /// Directions at which the light in a slab is known: the nodes of a Gauss-Legendre rule over the
 /// cosines of a hemisphere, then any others.

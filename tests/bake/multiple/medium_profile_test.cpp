@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "bake/effects/multiple/choose_model.h"
 #include "bake/effects/multiple/medium_profile.h"
 #include "bake/effects/multiple/sample_transport.h"
-#include "bake/effects/multiple/choose_model.h"
 #include "bake/physics/fresnel.h"
 #include "bake/physics/slab/even_light.h"
 #include "bake/receivers/surface_samples.h"

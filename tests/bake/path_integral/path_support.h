@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include "bake/physics/path_integral/turn.h"
 #include "bake/physics/path_integral/grid_medium.h"
+#include "bake/physics/path_integral/turn.h"
 #include "formats/sparse_grid.h"
 #include "tests/support/volume_table.h"
 

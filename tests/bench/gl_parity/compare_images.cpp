@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/surface.h"
 #include "runtime/normal_maps/turned_light.h"
+#include "runtime/surface.h"
 #include "runtime/texture.h"
 #include "tests/bench/gl_parity/comparisons.h"
 #include "tests/runtime/embed_gl/host/host_images.h"

@@ -1,7 +1,7 @@
 // Light of volumes: grids of radiance and of temperatures.
 
-#include "formats/fill_grid.h"
 #include "formats/media/load_emission.h"
+#include "formats/fill_grid.h"
 #include "formats/media/load_volumes.h"
 #include "formats/vdb/write_vdb.h"
 #include "tests/formats/media/media_text.h"

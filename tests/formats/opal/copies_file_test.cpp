@@ -8,7 +8,6 @@
 
 #include "formats/opal/layout.h"
 #include "tests/formats/opal/hole_fixture.h"
-#include "tests/formats/opal/mix_fixture.h"
 #include "tests/formats/opal/normal_map_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
 #include "tests/formats/opal/slot_fixture.h"

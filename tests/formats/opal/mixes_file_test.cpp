@@ -2,8 +2,8 @@
 #include <gmock/gmock.h>
 
 #include "formats/opal/layout.h"
-#include "tests/formats/opal/slot_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
+#include "tests/formats/opal/slot_fixture.h"
 
 namespace opaline::formats {
 namespace {
