@@ -18,6 +18,7 @@
 #include "bake/receivers/surface_points.h"
 #include "bake/receivers/surface_samples.h"
 #include "bake/receivers/vertex_receivers.h"
+#include "bake/refine/met_meshes.h"
 #include "bake/scene/base_color.h"
 #include "bake/scene/copies.h"
 #include "bake/trace/packet_lane.h"
@@ -273,6 +274,7 @@ ShareReport share_copies(const RayScene& rays, const ShareLimits& limits, const 
         return report;
     }
     std::ranges::stable_sort(meshes, {}, &CopiedMesh::original);
+    const MetMeshes met(scene);
     double squares = 0;
     std::uint64_t bytes = 0;
     for (std::size_t begin = 0, end = 0; begin < meshes.size(); begin = end) {
@@ -305,8 +307,9 @@ ShareReport share_copies(const RayScene& rays, const ShareLimits& limits, const 
             [&](Range range, std::vector<std::vector<Met>>&& seen) {
                 for (std::size_t i = range.begin; i < range.end; ++i) {
                     std::vector<Met>& own = seen[i - range.begin];
-                    const bool has_room = bytes + bytes_each <= formats::kMostBytesOfCopies;
-                    const Likeness like = has_room ? originals.find_like(own) : Likeness{};
+                    const bool may_share = bytes + bytes_each <= formats::kMostBytesOfCopies &&
+                                           !met.meets_another(copies[i]);
+                    const Likeness like = may_share ? originals.find_like(own) : Likeness{};
                     if (like.original != nullptr) {
                         point_at(*like.original, copies[i], scene);
                         squares += like.square;

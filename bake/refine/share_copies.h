@@ -29,8 +29,9 @@ struct ShareReport {
 /// to be expanded. Surroundings are compared by the same rays from the same points of each: what
 /// they leave of the sky, and the base colours that they meet. Copies of what sends out light, or
 /// is translucent, thin-walled or veined, are apart; and so are all where there are lamps or
-/// volumes, whose light is another one at every place, and what would take a reader of the file
-/// more than kMostBytesOfCopies. `rays`: of the scene as given. The same for any number of threads.
+/// volumes, whose light is another one at every place; one that shares a vertex with another mesh,
+/// whose edges refinement halves on both sides; and what would take a reader of the file more than
+/// kMostBytesOfCopies. `rays`: of the scene as given. The same for any number of threads.
 ShareReport share_copies(const RayScene& rays, const ShareLimits& limits, const Context& context,
                          formats::Scene& scene);
 

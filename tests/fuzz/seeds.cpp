@@ -61,7 +61,8 @@ Seeds opal_seeds() {
         {{0, 1, 2}, {0.5f, 0.5f}}, {{0, 1, 1}, {0.25f, 0}}, {{1, 0, 0}, {1, 0}}};
     Seeds seeds;
     for (const formats::Asset& asset :
-         {rich, tests::with_copied_corners(rich), refined, tests::make_cloud_asset(),
+         {rich, tests::with_copied_corners(rich), tests::with_two_copies(rich), refined,
+          tests::make_cloud_asset(),
           tests::make_cloud_asset({.has_peak = false, .has_radiance = false}),
           tests::make_emitter_asset(), tests::make_glow_asset(), tests::make_hole_asset(),
           tests::make_normal_map_asset(), tests::make_mapped_sheet_asset(),

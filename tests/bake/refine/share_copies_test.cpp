@@ -91,6 +91,20 @@ TEST(ShareCopies, LightOfPlacesAndMediaIsNotShared) {
               0u);
 }
 
+// Tiles side by side see the same sky. An edge that is halved on one side alone would be a crack.
+TEST(ShareCopies, PartsThatShareVerticesHaveRowsOfTheirOwn) {
+    const auto shared_at = [](float spacing) {
+        formats::Scene scene =
+            tests::make_scene({tests::make_quad({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, 2)});
+        for (int i = 1; i < 4; ++i) {
+            scene.primitives.emplace_back().copy = {0, {spacing * static_cast<float>(i), 0, 0}};
+        }
+        return share(scene).shared;
+    };
+    EXPECT_EQ(shared_at(1), 0u);
+    EXPECT_EQ(shared_at(1.25f), 3u);
+}
+
 TEST(ShareCopies, AreTheSameForAnyNumberOfThreads) {
     formats::Scene one = make_row(40, 3), three = one;
     const ShareReport a = share(one, 0.03, 1), b = share(three, 0.03, 3);

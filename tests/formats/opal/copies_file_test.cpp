@@ -15,29 +15,7 @@
 namespace opaline::formats {
 namespace {
 
-constexpr Vec3 kOffset{3, -1, 0.5f};
-
-void add_copy(Asset& asset, std::uint32_t original) {
-    PrimitiveRecord record = asset.primitives[original];
-    record.node = 77;
-    record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
-    record.first_index = static_cast<std::uint32_t>(asset.index.size());
-    record.vertex_count = record.index_count = 0;
-    asset.copies.push_back(
-        {static_cast<std::uint32_t>(asset.primitives.size()), original, kOffset, 0});
-    asset.primitives.push_back(record);
-    if (!asset.roughness.empty()) asset.roughness.push_back(asset.roughness[original]);
-    if (!asset.gloss.empty()) asset.gloss.push_back(asset.gloss[original]);
-    if (!asset.slots.empty()) asset.slots.offset.push_back(asset.slots.offset.back());
-    if (!asset.added.count.empty()) asset.added.count.push_back(0);
-}
-
-// The second one stands behind the first, whose vertices move its own on.
-Asset with_two_copies(Asset asset) {
-    add_copy(asset, 0);
-    add_copy(asset, 0);
-    return asset;
-}
+constexpr Vec3 kOffset = tests::kCopyOffset;
 
 void expect_same_rows(const RowRange& a, const RowRange& b) {
     EXPECT_EQ(a.first_row, b.first_row);
@@ -86,10 +64,14 @@ void expect_copy(const AssetView& view, std::size_t original, std::size_t copy) 
 }
 
 TEST(CopiesFile, HaveTheRowsAndTheMovedVerticesOfTheirOriginals) {
+    Asset refined = tests::make_small_asset();
+    refined.added.count = {1, 2};
+    refined.added.vertex = {
+        {{0, 1, 2}, {0.5f, 0.5f}}, {{0, 1, 1}, {0.25f, 0}}, {{1, 0, 0}, {1, 0}}};
     for (const Asset& given :
-         {tests::make_small_asset(), tests::make_shared_asset(), tests::make_mixed_asset(),
+         {refined, tests::make_small_asset(), tests::make_shared_asset(), tests::make_mixed_asset(),
           tests::make_hole_asset(), tests::make_normal_map_asset()}) {
-        const tests::StoredAsset plain(given), stored(with_two_copies(given));
+        const tests::StoredAsset plain(given), stored(tests::with_two_copies(given));
         const AssetView& view = stored.view();
         const std::size_t first = given.primitives.size();
         expect_copy(view, 0, first);
@@ -113,7 +95,7 @@ TEST(CopiesFile, WhatCannotBeIsRefusedByName) {
         {[](Asset& a) { a.primitives[0].vertex_count = 99; }, "outside their arrays"},
         {[](Asset& a) { a.primitives[0].first_index = 99; }, "outside their arrays"},
     };
-    tests::expect_refused(with_two_copies(tests::make_small_asset()), "COPY", cases);
+    tests::expect_refused(tests::with_two_copies(tests::make_small_asset()), "COPY", cases);
 }
 
 // A small file must not make a reader allocate without end.

@@ -108,4 +108,26 @@ inline formats::Asset make_mixed_asset() {
     return with_mixed_vertices(asset);
 }
 
+inline constexpr formats::Vec3 kCopyOffset{3, -1, 0.5f};
+
+/// The same asset with two copies of its first primitive, of node 77. The second one stands behind
+/// the first, whose vertices move its own on.
+inline formats::Asset with_two_copies(formats::Asset asset) {
+    for (int i = 0; i < 2; ++i) {
+        formats::PrimitiveRecord record = asset.primitives[0];
+        record.node = 77;
+        record.first_vertex = static_cast<std::uint32_t>(asset.position.size());
+        record.first_index = static_cast<std::uint32_t>(asset.index.size());
+        record.vertex_count = record.index_count = 0;
+        asset.copies.push_back(
+            {static_cast<std::uint32_t>(asset.primitives.size()), 0, kCopyOffset, 0});
+        asset.primitives.push_back(record);
+        if (!asset.roughness.empty()) asset.roughness.push_back(asset.roughness[0]);
+        if (!asset.gloss.empty()) asset.gloss.push_back(asset.gloss[0]);
+        if (!asset.slots.empty()) asset.slots.offset.push_back(asset.slots.offset.back());
+        if (!asset.added.count.empty()) asset.added.count.push_back(0);
+    }
+    return asset;
+}
+
 }  // namespace opaline::tests
