@@ -47,6 +47,9 @@ std::string find_record_fault(const AssetView& stored, std::size_t i,
         return "it is out of order, or stands twice";
     }
     if (is_copy[copy.original] != 0) return "its original is a copy itself";
+    if (stored.primitives[copy.original].shading != Shading::diffuse) {
+        return "what its vertices show depends on the view";
+    }
     const PrimitiveRecord& record = stored.primitives[copy.primitive];
     if (record.vertex_count != 0 || record.index_count != 0 || stored.added.of(copy.primitive)) {
         return "it has vertices or triangles of its own";

@@ -15,7 +15,7 @@ struct AssetView;
 /// That a primitive repeats an earlier or later one elsewhere: it has the same triangles, vertices
 /// and rows, its positions moved by `offset`. Fixed size, stored as is; formats/README.md, `COPY`.
 struct CopyRecord {
-    std::uint32_t primitive = 0, original = 0;  ///< the original is no copy
+    std::uint32_t primitive = 0, original = 0;  ///< the original is no copy; of diffuse shading
     Vec3 offset;                                ///< [m], finite
     std::uint32_t reserved = 0;
 };

@@ -1,6 +1,7 @@
 // Vertices without rows of their own show the weighted mean of what others do.
 #include <gtest/gtest.h>
 
+#include "tests/formats/opal/opal_bytes.h"
 #include "tests/formats/opal/slot_fixture.h"
 #include "tests/runtime/light_test_support.h"
 #include "tests/runtime/shade_test_support.h"
@@ -59,6 +60,25 @@ TEST(MixedRows, AVertexShowsTheMeanOfItsSlotsByWeight) {
     std::vector<Rgb> part(50);
     shade_range(asset.view(), light, first, part, options);
     EXPECT_TRUE(std::equal(part.begin(), part.end(), shown.begin() + first));
+}
+
+// Their light comes from the rows of the original, whatever their place.
+TEST(MixedRows, CopiesShowWhatTheirOriginalShows) {
+    Asset dark = tests::with_mixed_vertices(make_asset_with_triangles());
+    dark.emitters = {};
+    const tests::StoredAsset stored(tests::with_two_copies(dark));
+    const formats::AssetView& asset = stored.view();
+    std::vector<Rgb> shown(asset.receivers());
+    shade(asset, tests::random_light(8, 5), shown, {.base_color = false, .fresnel = false});
+    const std::size_t primitives = asset.primitives.size();
+    const formats::PrimitiveRecord& original = asset.primitives[0];
+    const auto shown_by = [&](const formats::PrimitiveRecord& p) {
+        return std::span(shown).subspan(p.first_vertex, p.vertex_count);
+    };
+    ASSERT_GT(original.vertex_count, 0u);
+    for (const std::size_t copy : {primitives - 2, primitives - 1}) {
+        EXPECT_TRUE(std::ranges::equal(shown_by(asset.primitives[copy]), shown_by(original)));
+    }
 }
 
 }  // namespace

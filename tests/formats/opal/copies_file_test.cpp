@@ -86,6 +86,7 @@ TEST(CopiesFile, WhatCannotBeIsRefusedByName) {
     const float infinity = std::numeric_limits<float>::infinity();
     const std::vector<tests::Impossible> cases{
         {[](Asset& a) { a.copies[1].original = a.copies[0].primitive; }, "a copy itself"},
+        {[](Asset& a) { a.primitives[0].shading = Shading::sheet; }, "depends on the view"},
         {[](Asset& a) { a.copies[0].original = 99; }, "does not exist"},
         {[](Asset& a) { a.copies[0].primitive = 99; }, "does not exist"},
         {[](Asset& a) { std::swap(a.copies[0], a.copies[1]); }, "out of order"},

@@ -85,6 +85,18 @@ TEST_P(EmbedGlRelight, VerticesWithoutRowsOfTheirOwnShowWhatTheCpuSays) {
     EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
 }
 
+TEST_P(EmbedGlRelight, CopiesShowWhatTheCpuSays) {
+    const formats::Asset asset =
+        tests::with_two_copies(tests::with_mixed_vertices(make_every_kind(8, 8)));
+    make(asset, OPALINE_GL_WITH_TEXTURE);
+    relight();
+    expect_relit();
+    const float eye[3] = {2, 1, 7};
+    look_from({2, 1, 7});
+    expect_relit(eye);
+    EXPECT_EQ(glGetError(), GLenum{GL_NO_ERROR});
+}
+
 TEST_P(EmbedGlRelight, IndicesOfFourBytesAreRead) {
     formats::Asset asset = make_asset(128, 8);
     add_primitive(asset, make_sphere({0, 0, 0}, 1, 5, 4), {.bands = 1, .details = 90});
