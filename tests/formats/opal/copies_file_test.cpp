@@ -10,6 +10,7 @@
 #include "tests/formats/opal/hole_fixture.h"
 #include "tests/formats/opal/normal_map_fixture.h"
 #include "tests/formats/opal/opal_bytes.h"
+#include "tests/formats/opal/receiver_error_fixture.h"
 #include "tests/formats/opal/slot_fixture.h"
 
 namespace opaline::formats {
@@ -80,6 +81,21 @@ TEST(CopiesFile, HaveTheRowsAndTheMovedVerticesOfTheirOriginals) {
         EXPECT_EQ(count_stored_vertices(view), plain.view().receivers());
         tests::expect_same_bytes(view.position.first(given.position.size()), given.position);
     }
+}
+
+TEST(CopiesFile, ErrorsOfReceiversAreThoseOfTheirOriginals) {
+    const std::vector<float> errors = tests::make_receiver_errors();
+    tests::AlignedBytes file(
+        tests::encode_with_errors(errors, tests::with_two_copies(tests::make_small_asset())));
+    const auto loaded = read_opal(file.bytes(), "a.opal", Checks::full);
+    ASSERT_TRUE(loaded);
+    const auto read = read_receiver_errors(file.bytes(), *loaded, "a.opal");
+    ASSERT_TRUE(read);
+    const std::uint32_t count = loaded->view.primitives[0].vertex_count;
+    std::vector<float> expected = errors;
+    expected.insert(expected.end(), errors.begin(), errors.begin() + count);
+    expected.insert(expected.end(), errors.begin(), errors.begin() + count);
+    EXPECT_EQ(*read, expected);
 }
 
 TEST(CopiesFile, WhatCannotBeIsRefusedByName) {

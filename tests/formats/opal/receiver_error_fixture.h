@@ -17,12 +17,13 @@ inline std::vector<float> make_receiver_errors() {
     return errors;
 }
 
-/// make_small_asset with errors by receiver, as bytes of a file.
-inline std::vector<std::byte> encode_with_errors(const std::vector<float>& errors) {
+/// An asset with errors by receiver, as bytes of a file.
+inline std::vector<std::byte> encode_with_errors(const std::vector<float>& errors,
+                                                 const formats::Asset& asset = make_small_asset()) {
     const TemporaryFolder folder;
     auto file = formats::AtomicFile::create(folder / "a.opal");
     EXPECT_TRUE(file);
-    EXPECT_TRUE(formats::write_opal_bytes(make_small_asset().view(), *file, errors));
+    EXPECT_TRUE(formats::write_opal_bytes(asset.view(), *file, errors));
     EXPECT_TRUE(file->commit());
     auto mapped = formats::FileBytes::open(folder / "a.opal");
     EXPECT_TRUE(mapped);
