@@ -81,8 +81,8 @@ std::vector<Look> draw_looks(const formats::Scene& scene, const CopiedMesh& mesh
             const float x = (static_cast<float>(ray % 4) + u[0]) / 4;
             const float y = (static_cast<float>(ray / 4) + u[1]) / 4;
             const float azimuth = 2 * std::numbers::pi_v<float> * x, cosine = std::sqrt(1 - y);
-            const glm::vec3 way(std::sqrt(y) * std::cos(azimuth),
-                                  std::sqrt(y) * std::sin(azimuth), cosine);
+            const glm::vec3 way(std::sqrt(y) * std::cos(azimuth), std::sqrt(y) * std::sin(azimuth),
+                                cosine);
             looks.push_back({from, frame.to_world(way), cosine, true});
         }
     }
