@@ -109,7 +109,14 @@ void share_copies(const SceneOptions& options, const bake::Knobs& knobs,
     if (copies.given == 0) return;
     require(check(bake::count_memory(bake::count_with(scene, copies.apart))));
     bake::expand_copies(copies.apart, scene);
-    if (copies.shared == 0) return;
+    if (copies.shared == 0) {
+        if (!knobs.simplify) return;
+        print_note(fmt::format(
+            "{}: none of {} repeated meshes shares the rows of another: what is around them "
+            "differs, or there are lamps, volumes or media",
+            printable(options.scene), copies.given));
+        return;
+    }
     print_note(
         fmt::format("{}: {} of {} repeated meshes share the rows of others, and err by some "
                     "{:.1f} % for it",
