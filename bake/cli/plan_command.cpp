@@ -28,7 +28,7 @@ struct PlanCommand {
     bool json = false;
 };
 
-// As the bake will warn of it. Which faces must be turned takes it seconds to find out.
+// As the bake will warn of it, of large scenes: which of their faces must be turned takes seconds.
 std::vector<formats::Diagnostic> describe_media_faults(const formats::Scene& scene,
                                                        const bake::SceneFacts& facts) {
     std::vector<bake::BodySurface> surfaces;
@@ -82,7 +82,9 @@ int run(const PlanCommand& options) {
     }
     bake::ScenePlan plan = bake::plan_scene(effects, scene, std::move(simplified.slots), knobs);
     require(bake::check_lamps(scene, plan.count_emitters(), bake::kEmitters));
-    std::vector<formats::Diagnostic> warnings = describe_media_faults(scene, plan.facts);
+    std::vector<formats::Diagnostic> warnings =
+        is_quick ? bake::describe_faults(imported.scene, bodies.surfaces)
+                 : describe_media_faults(scene, plan.facts);
     if (evened) {
         warnings.insert(warnings.end(), evened->warnings.begin(), evened->warnings.end());
     }

@@ -1,7 +1,9 @@
 #include "bake/refine/met_meshes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <unordered_map>
 #include <unordered_set>
 
 #include "bake/scene/weld.h"
@@ -9,53 +11,77 @@
 namespace opaline::bake {
 
 MetMeshes::MetMeshes(const formats::Scene& scene) : scene_(scene) {
+    const auto add = [&](std::uint32_t place, std::uint32_t first, std::uint32_t count,
+                         glm::vec3 offset, const Box& own) {
+        const Box box{own.low + offset, own.high + offset};
+        by_width_[std::ilogb(box.high.x - box.low.x)].push_back({place, first, count, offset, box});
+    };
+    std::unordered_map<std::uint32_t, Box> originals;
     std::vector<std::uint32_t> count(scene.primitives.size(), 1);  // of the mesh that begins there
     for (const CopiedMesh& mesh : find_copied_meshes(scene)) {
-        add(mesh.original, mesh.count, mesh.offset);
+        auto found = originals.find(mesh.original);
+        if (found == originals.end()) {
+            found = originals.emplace(mesh.original, box_of(mesh.original, mesh.count)).first;
+        }
+        add(mesh.first, mesh.original, mesh.count, mesh.offset, found->second);
         count[mesh.original] = mesh.count;
     }
     for (std::uint32_t p = 0; p < scene.primitives.size(); p += count[p]) {
-        if (!scene.primitives[p].is_copy()) add(p, count[p], glm::vec3(0));
+        if (scene.primitives[p].position.empty()) continue;
+        add(p, p, count[p], glm::vec3(0), box_of(p, count[p]));
+    }
+    for (auto& [width, meshes] : by_width_) {
+        std::ranges::sort(meshes, {}, [](const Mesh& mesh) { return mesh.box.low.x; });
     }
 }
 
-void MetMeshes::add(std::uint32_t first, std::uint32_t count, glm::vec3 offset) {
-    Mesh mesh{first, count, offset, glm::vec3(std::numeric_limits<float>::max()),
-              glm::vec3(std::numeric_limits<float>::lowest())};
+MetMeshes::Box MetMeshes::box_of(std::uint32_t first, std::uint32_t count) const {
+    Box box{glm::vec3(std::numeric_limits<float>::max()),
+            glm::vec3(std::numeric_limits<float>::lowest())};
     for (std::uint32_t p = first; p < first + count; ++p) {
         for (const glm::vec3& at : scene_.primitives[p].position) {
-            mesh.low = glm::min(mesh.low, at + offset);
-            mesh.high = glm::max(mesh.high, at + offset);
+            box = {glm::min(box.low, at), glm::max(box.high, at)};
         }
     }
-    meshes_.push_back(mesh);
+    return box;
+}
+
+bool MetMeshes::share_a_vertex(const Mesh& a, const Mesh& b) const {
+    const glm::vec3 low = glm::max(a.box.low, b.box.low), high = glm::min(a.box.high, b.box.high);
+    if (glm::any(glm::lessThan(high, low))) return false;
+    const auto for_places = [&](const Mesh& mesh, auto&& visit) {
+        for (std::uint32_t p = mesh.first; p < mesh.first + mesh.count; ++p) {
+            for (const glm::vec3& own : scene_.primitives[p].position) {
+                const glm::vec3 at = own + mesh.offset;
+                if (glm::all(glm::lessThanEqual(low, at)) &&
+                    glm::all(glm::lessThanEqual(at, high))) {
+                    visit(weld_key(at));
+                }
+            }
+        }
+    };
+    std::unordered_set<glm::vec3, PositionHash> places;
+    for_places(a, [&](glm::vec3 at) { places.insert(at); });
+    bool shares = false;
+    for_places(b, [&](glm::vec3 at) { shares = shares || places.contains(at); });
+    return shares;
 }
 
 bool MetMeshes::meets_another(const CopiedMesh& copy) const {
-    const auto is_self = [&](const Mesh& m) {
-        return m.first == copy.original && m.offset == copy.offset;
-    };
-    const auto self = std::ranges::find_if(meshes_, is_self);
-    for (const Mesh& other : meshes_) {
-        const glm::vec3 low = glm::max(self->low, other.low);
-        const glm::vec3 high = glm::min(self->high, other.high);
-        if (&other == &*self || glm::any(glm::lessThan(high, low))) continue;
-        const auto for_places = [&](const Mesh& mesh, auto&& visit) {
-            for (std::uint32_t p = mesh.first; p < mesh.first + mesh.count; ++p) {
-                for (const glm::vec3& own : scene_.primitives[p].position) {
-                    const glm::vec3 at = own + mesh.offset;
-                    if (glm::all(glm::lessThanEqual(low, at)) &&
-                        glm::all(glm::lessThanEqual(at, high))) {
-                        visit(weld_key(at));
-                    }
-                }
-            }
-        };
-        std::unordered_set<glm::vec3, PositionHash> places;
-        for_places(other, [&](glm::vec3 at) { places.insert(at); });
-        bool meets = false;
-        for_places(*self, [&](glm::vec3 at) { meets = meets || places.contains(at); });
-        if (meets) return true;
+    const Box own = box_of(copy.original, copy.count);
+    const Mesh self{copy.first,
+                    copy.original,
+                    copy.count,
+                    copy.offset,
+                    {own.low + copy.offset, own.high + copy.offset}};
+    for (const auto& [width, meshes] : by_width_) {
+        // What begins before this ends before the copy begins.
+        const float first = self.box.low.x - std::ldexp(1.0f, std::min(width, 125) + 1);
+        auto mesh =
+            std::ranges::lower_bound(meshes, first, {}, [](const Mesh& m) { return m.box.low.x; });
+        for (; mesh != meshes.end() && mesh->box.low.x <= self.box.high.x; ++mesh) {
+            if (mesh->place != self.place && share_a_vertex(*mesh, self)) return true;
+        }
     }
     return false;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <map>
 #include <vector>
 
 #include "bake/scene/copies.h"
@@ -16,17 +17,25 @@ class MetMeshes {
 
     /// Whether a vertex of a copied mesh is a vertex of another one too, as where parts of a
     /// modular kit meet: edges that are halved on one side are halved on the other.
-    bool meets_another(const CopiedMesh& mesh) const;
+    bool meets_another(const CopiedMesh& copy) const;
 
   private:
-    struct Mesh {
-        std::uint32_t first, count;  // primitives, whose arrays it has
-        glm::vec3 offset, low, high;
+    struct Box {
+        glm::vec3 low, high;  // [m]
     };
-    void add(std::uint32_t first, std::uint32_t count, glm::vec3 offset);
+    struct Mesh {
+        std::uint32_t place;         // its first primitive
+        std::uint32_t first, count;  // primitives, whose arrays it has
+        glm::vec3 offset;
+        Box box;
+    };
+    Box box_of(std::uint32_t first, std::uint32_t count) const;
+    bool share_a_vertex(const Mesh& a, const Mesh& b) const;
 
     const formats::Scene& scene_;
-    std::vector<Mesh> meshes_;
+    // By the exponent of their width along x, each sorted by where they begin: those that a box
+    // overlaps lie in a short range of each.
+    std::map<int, std::vector<Mesh>> by_width_;
 };
 
 }  // namespace opaline::bake

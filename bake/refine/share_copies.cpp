@@ -27,7 +27,12 @@
 namespace opaline::bake {
 namespace {
 
-constexpr std::size_t kPoints = 256, kRays = RayPacket::kSize;
+constexpr std::size_t kRays = RayPacket::kSize;
+
+// Where a mesh is asked: of a small one the rays should cost far less than its rows.
+std::size_t count_points(std::size_t vertices) {
+    return std::clamp<std::size_t>(vertices / 4, 16, 128);
+}
 
 // A ray from an instance: where it starts, of the original, and its cosine with the normal there.
 struct Look {
@@ -68,11 +73,16 @@ std::vector<Look> draw_looks(const formats::Scene& scene, const CopiedMesh& mesh
     std::iota(own.begin(), own.end(), mesh.original);
     const AreaTable table = make_area_table(scene, own);
     if (!(table.total() > 0)) return {};
+    std::size_t vertices = 0;
+    for (const std::uint32_t p : own) {
+        vertices += scene.primitives[p].position.size();
+    }
+    const std::size_t points = count_points(vertices);
     std::vector<Look> looks;
-    looks.reserve(kPoints * kRays);
+    looks.reserve(points * kRays);
     std::uint32_t number = 0;
     for (const SurfacePoint& point :
-         scatter_points(scene, table, kPoints, false, seed, RandomStage::refine_probes)) {
+         scatter_points(scene, table, points, false, seed, RandomStage::refine_probes)) {
         const Receiver from = make_surface_sample(scene, point, 0).receiver;
         const Frame frame = make_frame(from.normal);
         for (std::uint32_t ray = 0; ray < kRays; ++ray) {
@@ -273,8 +283,13 @@ ShareReport share_copies(const RayScene& rays, const ShareLimits& limits, const 
         report.apart = std::move(meshes);
         return report;
     }
-    std::ranges::stable_sort(meshes, {}, &CopiedMesh::original);
     const MetMeshes met(scene);
+    std::erase_if(meshes, [&](const CopiedMesh& mesh) {
+        if (may_repeat(scene, mesh) && !met.meets_another(mesh)) return false;
+        report.apart.push_back(mesh);
+        return true;
+    });
+    std::ranges::stable_sort(meshes, {}, &CopiedMesh::original);
     double squares = 0;
     std::uint64_t bytes = 0;
     for (std::size_t begin = 0, end = 0; begin < meshes.size(); begin = end) {
@@ -282,10 +297,7 @@ ShareReport share_copies(const RayScene& rays, const ShareLimits& limits, const 
             ++end;
         const std::span<const CopiedMesh> copies = std::span(meshes).subspan(begin, end - begin);
         const std::uint64_t bytes_each = bytes_of(scene, copies.front());
-        std::vector<Look> looks;
-        if (may_repeat(scene, copies.front())) {
-            looks = draw_looks(scene, copies.front(), limits.seed);
-        }
+        std::vector<Look> looks = draw_looks(scene, copies.front(), limits.seed);
         if (looks.empty()) {
             report.apart.insert(report.apart.end(), copies.begin(), copies.end());
             continue;
@@ -307,9 +319,8 @@ ShareReport share_copies(const RayScene& rays, const ShareLimits& limits, const 
             [&](Range range, std::vector<std::vector<Met>>&& seen) {
                 for (std::size_t i = range.begin; i < range.end; ++i) {
                     std::vector<Met>& own = seen[i - range.begin];
-                    const bool may_share = bytes + bytes_each <= formats::kMostBytesOfCopies &&
-                                           !met.meets_another(copies[i]);
-                    const Likeness like = may_share ? originals.find_like(own) : Likeness{};
+                    const bool has_room = bytes + bytes_each <= formats::kMostBytesOfCopies;
+                    const Likeness like = has_room ? originals.find_like(own) : Likeness{};
                     if (like.original != nullptr) {
                         point_at(*like.original, copies[i], scene);
                         squares += like.square;

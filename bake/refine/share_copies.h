@@ -20,7 +20,7 @@ struct ShareLimits {
 /// What copies became.
 struct ShareReport {
     std::uint64_t given = 0, shared = 0;  ///< repeated meshes; those that share rows
-    double error = 0;  ///< RMS over those, as of ShareLimits: measured, from 4096 rays each
+    double error = 0;  ///< RMS over those, as of ShareLimits: measured, from 256 to 2048 rays each
     std::vector<CopiedMesh> apart;  ///< those that need rows of their own: to be expanded
 };
 

@@ -68,7 +68,7 @@ TEST(ShareCopies, OneBesideAWallOrAboveAnotherFloorHasRowsOfItsOwn) {
         scene.primitives.back().material = i == 2 ? 1 : 0;
     }
     scene.primitives.push_back(tests::make_quad({398, -1, -3}, {0, 4, 0}, {0, 0, 6}));
-    const ShareReport report = share(scene);
+    const ShareReport report = share(scene, 0.03);
     ASSERT_EQ(report.apart.size(), 2u);
     EXPECT_EQ(report.apart[0].first, 2u);
     EXPECT_EQ(report.apart[1].first, 4u);
