@@ -46,7 +46,7 @@ MetMeshes::Box MetMeshes::box_of(std::uint32_t first, std::uint32_t count) const
     return box;
 }
 
-bool MetMeshes::share_a_vertex(const Mesh& a, const Mesh& b) const {
+bool MetMeshes::share_a_vertex(const Mesh& a, const Mesh& b) {
     const glm::vec3 low = glm::max(a.box.low, b.box.low), high = glm::min(a.box.high, b.box.high);
     if (glm::any(glm::lessThan(high, low))) return false;
     const auto for_places = [&](const Mesh& mesh, auto&& visit) {
@@ -60,6 +60,14 @@ bool MetMeshes::share_a_vertex(const Mesh& a, const Mesh& b) const {
             }
         }
     };
+    std::uint64_t work = 0;
+    for (const Mesh* mesh : {&a, &b}) {
+        for (std::uint32_t p = mesh->first; p < mesh->first + mesh->count; ++p) {
+            work += scene_.primitives[p].position.size();
+        }
+    }
+    if (work > work_left_) return true;
+    work_left_ -= work;
     std::unordered_set<glm::vec3, PositionHash> places;
     for_places(a, [&](glm::vec3 at) { places.insert(at); });
     bool shares = false;
@@ -67,7 +75,7 @@ bool MetMeshes::share_a_vertex(const Mesh& a, const Mesh& b) const {
     return shares;
 }
 
-bool MetMeshes::meets_another(const CopiedMesh& copy) const {
+bool MetMeshes::meets_another(const CopiedMesh& copy) {
     const Box own = box_of(copy.original, copy.count);
     const Mesh self{copy.first,
                     copy.original,

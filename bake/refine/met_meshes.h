@@ -16,8 +16,9 @@ class MetMeshes {
     explicit MetMeshes(const formats::Scene& scene);
 
     /// Whether a vertex of a copied mesh is a vertex of another one too, as where parts of a
-    /// modular kit meet: edges that are halved on one side are halved on the other.
-    bool meets_another(const CopiedMesh& copy) const;
+    /// modular kit meet: edges that are halved on one side are halved on the other. True, too, of
+    /// what is asked after some seconds of work, where thousands of meshes lie in each other.
+    bool meets_another(const CopiedMesh& copy);
 
   private:
     struct Box {
@@ -30,9 +31,10 @@ class MetMeshes {
         Box box;
     };
     Box box_of(std::uint32_t first, std::uint32_t count) const;
-    bool share_a_vertex(const Mesh& a, const Mesh& b) const;
+    bool share_a_vertex(const Mesh& a, const Mesh& b);
 
     const formats::Scene& scene_;
+    std::uint64_t work_left_ = 200'000'000;  // vertices
     // By the exponent of their width along x, each sorted by where they begin: those that a box
     // overlaps lie in a short range of each.
     std::map<int, std::vector<Mesh>> by_width_;

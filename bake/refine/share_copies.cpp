@@ -283,7 +283,7 @@ ShareReport share_copies(const RayScene& rays, const ShareLimits& limits, const 
         report.apart = std::move(meshes);
         return report;
     }
-    const MetMeshes met(scene);
+    MetMeshes met(scene);
     std::erase_if(meshes, [&](const CopiedMesh& mesh) {
         if (may_repeat(scene, mesh) && !met.meets_another(mesh)) return false;
         report.apart.push_back(mesh);
