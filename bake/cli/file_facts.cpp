@@ -39,6 +39,7 @@ bool scatters_often(const formats::LayerRecord& layer) {
     return layer.radiance_count() > 0;
 }
 
+// Over the area of the surfaces, however many receivers are where.
 double sum_luminance(const formats::AssetView& view, const runtime::LightVector& sky,
                      std::span<const formats::Rgb> emitters) {
     std::vector<formats::Rgb> radiance(view.receivers());
@@ -46,8 +47,18 @@ double sum_luminance(const formats::AssetView& view, const runtime::LightVector&
     options.emitters = {emitters, false};
     runtime::shade(view, sky, radiance, options);
     double sum = 0;
-    for (const formats::Rgb value : radiance)
-        sum += static_cast<double>(formats::luminance(value));
+    for (const formats::PrimitiveRecord& p : view.primitives) {
+        for (std::uint32_t i = 0; i + 2 < p.index_count; i += 3) {
+            const std::uint32_t* const corner = &view.index[p.first_index + i];
+            const auto at = [&](int k) { return view.position[p.first_vertex + corner[k]]; };
+            const double area =
+                0.5 * static_cast<double>(length(cross(at(1) - at(0), at(2) - at(0))));
+            for (int k = 0; k < 3; ++k) {
+                const formats::Rgb shown = radiance[p.first_vertex + corner[k]];
+                sum += area / 3 * static_cast<double>(formats::luminance(shown));
+            }
+        }
+    }
     return sum;
 }
 

@@ -26,8 +26,8 @@ struct VolumeFacts {
 VolumeFacts volume_facts(const formats::VolumesView& volumes, const formats::VolumeRecord& record);
 
 /// How much brighter each emitter of a file makes it than a sky of radiance 1: the mean luminance
-/// of all receivers by its light alone over that under the sky, each receiver seen along its
-/// normal. NaN where the sky gives no light, or the file has no receivers.
+/// over all surfaces by its light alone over that under the sky, each receiver seen along its
+/// normal. NaN where the sky gives no light, or the file has no surfaces.
 std::vector<double> compare_with_sky(const formats::AssetView& view);
 
 /// What `opaline info` says of the cloud layers of a file, as JSON and on stdout. Precondition:
