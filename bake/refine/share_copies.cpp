@@ -88,8 +88,9 @@ std::vector<Look> draw_looks(const formats::Scene& scene, const CopiedMesh& mesh
         for (std::uint32_t ray = 0; ray < kRays; ++ray) {
             const auto u =
                 random_uniform(seed, RandomStage::refine_probes, number++, mesh.original);
-            const float x = (static_cast<float>(ray % 4) + u[0]) / 4;
-            const float y = (static_cast<float>(ray / 4) + u[1]) / 4;
+            const std::uint32_t column = ray % 4, row = ray / 4;
+            const float x = (static_cast<float>(column) + u[0]) / 4;
+            const float y = (static_cast<float>(row) + u[1]) / 4;
             const float azimuth = 2 * std::numbers::pi_v<float> * x, cosine = std::sqrt(1 - y);
             const glm::vec3 way(std::sqrt(y) * std::cos(azimuth), std::sqrt(y) * std::sin(azimuth),
                                 cosine);

@@ -267,9 +267,8 @@ Fault find_copies_fault(const AssetView& stored, std::uint64_t file_size) {
         }
         is_copy[copy.primitive] = 1;
     }
-    const Fault fault = find_fault_in(section + ", record", stored.copies.size(), [&](auto i) {
-        return find_record_fault(stored, i, is_copy);
-    });
+    Fault fault = find_fault_in(section + ", record", stored.copies.size(),
+                                [&](auto i) { return find_record_fault(stored, i, is_copy); });
     if (!is_sound(fault)) return fault;
     const RestoredCounts counts = count_restored(stored);
     if (counts.vertices > std::numeric_limits<std::uint32_t>::max() ||

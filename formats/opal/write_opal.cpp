@@ -63,7 +63,8 @@ struct SectionHeads {
 
 SectionHeads make_heads(const AssetView& asset, std::span<const float> receiver_errors) {
     assert(std::ranges::all_of(asset.copies, [&](const CopyRecord& copy) {
-        return asset.primitives[copy.primitive].vertex_count == 0;
+        return copy.primitive >= asset.primitives.size() ||
+               asset.primitives[copy.primitive].vertex_count == 0;
     }));
     const auto count = [](auto span) { return static_cast<std::uint32_t>(span.size()); };
     SectionHeads heads;

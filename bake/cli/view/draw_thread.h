@@ -10,6 +10,7 @@
 #include <optional>
 #include <thread>
 
+#include "bake/cli/view/file_watch.h"
 #include "bake/cli/view/shown_file.h"
 #include "bake/cli/view/view_state.h"
 #include "formats/opal/result.h"

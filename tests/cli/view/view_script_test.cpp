@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "bake/cli/view/shown_file.h"
+#include "bake/cli/view/file_watch.h"
 #include "bake/cli/view/view_script.h"
 #include "bake/cli/view/view_state.h"
 #include "tests/support/temporary_folder.h"
