@@ -40,7 +40,7 @@ TEST(OpalVersion, ALaterVersionAsksForAnUpdate) {
         read_changed([](FileHeader& header, SectionEntry&) { header.version = kOpalVersion + 1; });
     ASSERT_FALSE(loaded);
     EXPECT_EQ(loaded.error().kind, ErrorKind::newer_file);
-    for (const auto& [id, version] : {std::pair{kPrimSection, kMixedVersion + 1},
+    for (const auto& [id, version] : {std::pair{kPrimSection, kCopiesVersion + 1},
                                       std::pair{kTranSection, kTransportVersion + 1}}) {
         const auto section = read_with_version(id, version);
         ASSERT_FALSE(section);
