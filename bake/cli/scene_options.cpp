@@ -220,11 +220,13 @@ void add_scene_options(const Command& command, SceneOptions& options) {
             }
         }
     }
-    command.add("--simplify", one_of(options.bake.simplify, {{"auto", true}, {"off", false}}),
-                "vertices of one place and one normal of a mesh, as unwelded, flat-shaded and "
-                "seamed exports have them, share their rows, and where opaque meshes are dense and "
-                "smooth most vertices interpolate those of others, at a third of the error that "
-                "--refine leaves: auto; or each has its own: off");
+    command.add(
+        "--simplify", one_of(options.bake.simplify, {{"auto", true}, {"off", false}}),
+        "vertices of one place and one normal of a mesh, as unwelded, flat-shaded and "
+        "seamed exports have them, share their rows, and where opaque meshes are dense and "
+        "smooth most vertices interpolate those of others, and instances of a mesh that are "
+        "only moved share rows where their surroundings are alike, each at a third of the "
+        "error that --refine leaves: auto; or each has its own: off");
     command.add_flag("--separate-terms", options.bake.separate_terms,
                      "keep " + formats::term_names(formats::TermSet::separable, " and ") +
                          " scattering apart, so that `render --terms` can show each");
