@@ -87,9 +87,16 @@ std::vector<Neighbours> find_neighbours(BodyShells& body) {
     return neighbours;
 }
 
-// Sine of the angle by which `other` rises above the plane of `t` at their common edge; negative if
-// `other` falls below it, and +-1 beyond a right angle.
-double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriangle& other) {
+constexpr double kSharp = 0.7;  // sine of 45 degrees
+
+// At the common edge of two triangles.
+struct Fold {
+    double sine = 0;    // of the angle by which one rises above the plane of the other, +-1 beyond
+                        // a right angle; negative: it falls below that plane
+    double length = 0;  // [m] of the edge
+};
+
+Fold find_fold(const BodyShells& body, const BodyTriangle& t, const BodyTriangle& other) {
     const std::array<glm::dvec3, 3> corner = corners(body, t);
     const std::array<std::uint32_t, 3>& p = t.point;
     const std::array<std::uint32_t, 3> point =
@@ -100,7 +107,7 @@ double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriang
     const auto apex = std::find_if(other.point.begin(), other.point.end(),
                                    [&](std::uint32_t at) { return !is_corner(t, at); });
     const double area = 2 * glm::length(area_vector(body, t));
-    if (apex == other.point.end() || !(area > 0)) return 0;
+    if (apex == other.point.end() || !(area > 0)) return {};
     const glm::dvec3 normal = 2.0 / area * area_vector(body, t);
     for (std::size_t k = 0; k < 3; ++k) {
         if (is_corner(other, point[k]) && is_corner(other, point[(k + 1) % 3])) {
@@ -112,12 +119,13 @@ double fold_sine(const BodyShells& body, const BodyTriangle& t, const BodyTriang
             constexpr double kRoundings = 4 * 0x1p-23;
             const glm::dvec3 size = glm::abs(corner[k]);
             if (std::abs(up) <= kRoundings * std::max({size.x, size.y, size.z})) {
-                return 0;
+                return {};
             }
-            return out > 0 ? up / std::hypot(up, out) : std::copysign(1.0, up);
+            return {out > 0 ? up / std::hypot(up, out) : std::copysign(1.0, up),
+                    glm::distance(corner[k], corner[(k + 1) % 3])};
         }
     }
-    return 0;
+    return {};
 }
 
 // Points by their position: numbers in a table that is half empty, in which a search goes on from
@@ -180,9 +188,10 @@ void cut_into_shells(BodyShells& body) {
             const BodyTriangle& t = body.triangle[body.order[i]];
             shell.volume += glm::dot(corners(body, t)[0] - centre, area_vector(body, t)) / 3;
             for (const Neighbour& n : neighbours[body.order[i]]) {
-                const double fold = fold_sine(body, t, body.triangle[n.triangle]);
-                shell.valley = std::max(shell.valley, fold);
-                shell.ridge = std::max(shell.ridge, -fold);
+                const Fold fold = find_fold(body, t, body.triangle[n.triangle]);
+                shell.valley = std::max(shell.valley, fold.sine);
+                shell.ridge = std::max(shell.ridge, -fold.sine);
+                if (std::abs(fold.sine) > kSharp) shell.sharp += 0.5 * fold.length;
             }
         }
         body.shell.push_back(shell);

@@ -188,12 +188,18 @@ bool sees_at_a_glance(const Scene& scene, std::uint32_t material, const Ends& en
 struct PartShape {
     std::uint64_t open_edges = 0;
     double hole_area = 0;  ///< [m^2] a bound
+    double sharp = 0;      ///< [m] length of sharp edges
     bool folds = false;    ///< inward
 };
 
 PartShape inspect_part(const Scene& scene, std::span<const std::uint32_t> primitives) {
     const BodyShells body = make_body_shells(scene, primitives);
-    return {body.open_edges, bound_hole_area(body), std::ranges::any_of(body.shell, folds_inward)};
+    double sharp = 0;
+    for (const BodyShell& shell : body.shell) {
+        sharp += shell.sharp;
+    }
+    return {body.open_edges, bound_hole_area(body), sharp,
+            std::ranges::any_of(body.shell, folds_inward)};
 }
 
 // Copies of a mesh are inspected once.
@@ -212,6 +218,7 @@ PartShape inspect_parts(const Scene& scene, std::uint32_t material) {
             if (const auto scale = part.size() == 1 ? scale_of_copy(first, *of) : std::nullopt) {
                 own = shape;
                 own->hole_area *= *scale * *scale;
+                own->sharp *= *scale;
             }
         }
         if (!own) {
@@ -221,6 +228,7 @@ PartShape inspect_parts(const Scene& scene, std::uint32_t material) {
         }
         all.open_edges += own->open_edges;
         all.hole_area += own->hole_area;
+        all.sharp += own->sharp;
         all.folds = all.folds || own->folds;
     }
     return all;
@@ -235,6 +243,7 @@ void inspect_shape(const Scene& scene, std::uint32_t material, const Ends& ends,
     if (sees && !scene.materials[material].medium) return;
     const PartShape shape = inspect_parts(scene, material);
     own.open_edges = shape.open_edges;
+    own.sharp_edges = shape.sharp;
     if (shape.open_edges > 0) {
         own.holes = own.area > 0 ? shape.hole_area / own.area : 1;
     }

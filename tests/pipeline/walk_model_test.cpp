@@ -56,6 +56,30 @@ TEST(WalkModel, SelfCheckFindsTheNoiseOfFewWalksAndNoneOfMany) {
     EXPECT_LT(clean, 0.06);
 }
 
+// Where light that scatters once is looked for along the normal, edges show .63 of it: straight
+// down from there is the edge of the other face.
+TEST(WalkModel, EdgesOfAWhiteCubeOf40MeanFreePathsShowTheirEvenLight) {
+    const tests::Scene cube = tests::make_translucent_scene({tests::make_cube(4, false)},
+                                                            tests::make_grey_medium(20, 0, 1));
+    BakeOptions options = bake_by(kWalked, 30000);
+    options.effects = {"multiple", "single"};
+    options.cubemap_size = 8;
+    options.set(kSites, 500);
+    const BakeResult baked = tests::bake_scene(cube, options);
+    double sum = 0, edges = 0;
+    const std::vector<formats::Rgb> radiance = tests::relight(baked.asset.view(), "white");
+    const formats::Primitive& p = cube.primitives.front();
+    for (std::size_t v = 0; v < p.position.size(); ++v) {
+        const glm::vec3 at = glm::abs(p.position[v]);
+        if (at.x + at.y + at.z < 1.9f) continue;
+        sum += static_cast<double>(radiance[v].g);
+        ++edges;
+    }
+    ASSERT_GT(edges, 0);
+    EXPECT_NEAR(sum / edges, 1, 0.08);
+    EXPECT_FALSE(entry_of(baked, "single").on);
+}
+
 // Of index 1 and isotropic, light scattered once is exact by its own effect.
 TEST(WalkModel, LightScatteredOnceIsTheSameByWalksAsByItsOwnEffect) {
     const tests::Scene ball =
