@@ -191,7 +191,7 @@ void cut_into_shells(BodyShells& body) {
                 const Fold fold = find_fold(body, t, body.triangle[n.triangle]);
                 shell.valley = std::max(shell.valley, fold.sine);
                 shell.ridge = std::max(shell.ridge, -fold.sine);
-                if (std::abs(fold.sine) > kSharp) shell.sharp += 0.5 * fold.length;
+                if (-fold.sine > kSharp) shell.sharp += 0.5 * fold.length;
             }
         }
         body.shell.push_back(shell);

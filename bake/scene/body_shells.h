@@ -29,7 +29,7 @@ struct BodyShell {
     /// away from it; 1 beyond a right angle. In a closed convex shell that faces outward `valley`
     /// is 0: folds below the rounding error of the coordinates do not count.
     double valley = 0, ridge = 0;
-    double sharp = 0;      ///< [m] length of the edges at which it folds by more than 45 degrees
+    double sharp = 0;      ///< [m] length of ridges of more than 45 degrees
     bool inside = false;   ///< of another shell
     bool is_open = false;  ///< has an edge at which an odd number of triangles meet
 };

@@ -188,7 +188,7 @@ bool sees_at_a_glance(const Scene& scene, std::uint32_t material, const Ends& en
 struct PartShape {
     std::uint64_t open_edges = 0;
     double hole_area = 0;  ///< [m^2] a bound
-    double sharp = 0;      ///< [m] length of sharp edges
+    double sharp = 0;      ///< [m] of BodyShell
     bool folds = false;    ///< inward
 };
 

@@ -55,7 +55,7 @@ struct MaterialFacts {
 
     /// Of a medium: edges where an odd number of triangles meet.
     std::uint64_t open_edges = 0;
-    double sharp_edges = 0;  ///< [m] of a medium: length of edges that fold by more than 45 degrees
+    double sharp_edges = 0;  ///< [m] of a medium: length of its ridges of more than 45 degrees
     /// Of a medium: bound on the area of holes over that of the surface (coverage.h).
     double holes = 0;
     /// Whether volume and area say how thick it is. A body with large holes may be a sheet: only

@@ -24,17 +24,18 @@ double expected_error(const formats::Medium& medium, const MaterialFacts& body) 
                                                  : 0);
 }
 
-// Whether a part of the surface that shows lies within a mean free path of sharp edges. Light that
-// scatters once is looked for along the normal, which sees nothing of the other face: of even light
-// a cube of 40 mean free paths and index 1 shows .63 at its edges by that, and .9 by walks.
+// Whether sharp edges, a mean free path wide, are a part of the surface that shows. `single` looks
+// along the normal, which runs down the other face there: of even light a cube of 40 mean free
+// paths and index 1 shows .81 at its edges, and .90 by walks. The share is found by trial.
 bool has_edges(const formats::Medium& medium, const MaterialFacts& body) {
     constexpr double kShows = 0.02;
     return body.sharp_edges * transport_mean_free_path(medium) > kShows * body.area;
 }
 
 // Whether walks also carry light that scatters once. Residual sites are so far apart that they blur
-// it. At edges and under a peaked phase function terms in the view err by more than that
-// (tests/bench/RESULTS.md, "Walks"), and no other model simulates media that vary.
+// it. Under a peaked phase function terms in the view err by more than that
+// (tests/bench/RESULTS.md, "Walks"), at edges `single` does, and no other model simulates media
+// that vary.
 bool hold_all_orders(const formats::Medium& medium, const MaterialFacts& body, const Knobs& knobs) {
     return transport_mean_free_path(medium) > 0 && body.area > 0 &&
            (body.varies || !expected_sites(medium, body, knobs).is_residual ||

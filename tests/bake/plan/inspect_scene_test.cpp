@@ -79,6 +79,17 @@ TEST(InspectScene, ACubeIsMeasured) {
     EXPECT_EQ(inspect_medium({make_quad({}, {1, 0, 0}, {0, 0, -1})}).open_edges, 4u);
 }
 
+// A hollow's edges are no ridges of the medium around it.
+TEST(InspectScene, SharpEdgesAreTheRidgesOfABodyAndOfItsCopies) {
+    const Primitive cube = make_cube(4, false);
+    EXPECT_NEAR(inspect_medium({cube}).sharp_edges, 24, 1e-5);
+    EXPECT_EQ(inspect_medium({make_sphere(3)}).sharp_edges, 0);
+    const Primitive hollow = transformed(make_cube(4, true), glm::mat3(1), 0.5f, {0, 0, 0});
+    EXPECT_NEAR(inspect_medium({cube, hollow}).sharp_edges, 24, 1e-5);
+    const Primitive copy = transformed(cube, some_rotation(), 0.5f, {9, 0, 0});
+    EXPECT_NEAR(inspect_medium({cube, copy}).sharp_edges, 36, 1e-4);
+}
+
 // As scans leave them: what is missing of the surface hardly matters to volume and area.
 TEST(InspectScene, BodyWithSmallHolesIsAsThickAsWithoutAndASheetHasNoThickness) {
     const MaterialFacts whole = inspect_medium({make_sphere(3)});
