@@ -138,7 +138,7 @@ BounceGather weigh_bounces(const BounceSpace& space, const BounceTree& tree, con
                            look_up != LookUp::nearest);
     std::vector<std::uint32_t> mirroring(ends.size(), formats::kNone);  // of each end, its number
     for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (ends[i].sends()) {
+        if (ends[i].is_met) {
             mirroring[i] = mirrored.add(ends[i], share_of(ends[i]));
         }
     }

@@ -8,6 +8,7 @@
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
+#include "bake/exchange/inside_media.h"
 #include "bake/exchange/narrow_lobe.h"
 #include "bake/physics/fresnel.h"
 #include "bake/physics/path_differentials/lobe.h"
@@ -114,6 +115,7 @@ RayEnd end_of_ray(const formats::Scene& scene, const glm::vec3& origin, const gl
                   const PacketHits& hits, std::size_t lane) {
     return {.position = origin + hits.distance[lane] * direction,
             .direction = direction,
+            .distance = hits.distance[lane],
             .error = hits.error[lane],
             .material = hits.material[lane],
             .side = side_of_hit(scene, hits, lane),
@@ -166,7 +168,7 @@ std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
                               std::vector<MirroredRay> open, std::vector<MirroredNode>& found) {
     // Boundaries that face each other mirror a few hundredths of the arriving light, except at
     // grazing angles.
-    constexpr int kMostMirrors = 4;
+    constexpr std::uint16_t kMostMirrors = 4;
     constexpr float kFaint = 1e-5f;  // of the first ray's light: what is left stays where it is
     constexpr std::size_t kLanes = RayPacket::kSize;
     const auto add = [&](std::uint32_t node, const MirroredRay& ray, const formats::Rgb& share) {
@@ -175,7 +177,7 @@ std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
         }
     };
     std::uint64_t traced = 0;
-    for (int mirrors = 0; mirrors < kMostMirrors && !open.empty(); ++mirrors) {
+    while (!open.empty()) {
         std::vector<MirroredRay> next;
         for (std::size_t begin = 0; begin < open.size(); begin += kLanes) {
             const std::span<const MirroredRay> some =
@@ -195,12 +197,19 @@ std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
                     continue;
                 }
                 const RayEnd end = end_of_ray(space.scene, ray.origin, ray.direction, hits, i);
+                if (is_inside(space, end)) {
+                    MirroredRay on = go_on_inside(space, end, ray.share, ray.number);
+                    on.mirrors = ray.mirrors, on.inside = ray.inside + 1;
+                    if (on.inside < kMostInside && !(on.largest() < kFaint)) next.push_back(on);
+                    continue;
+                }
                 if (!end.side.is_seen) continue;
                 const std::uint32_t node =
                     tree.find(end.position - end.triangle.offset,
                               {end.material, end.side.behind, end.side.normal}, 0);
                 MirroredRay on = mirror(space, end, ray.share, ray.number);
-                if (mirrors + 1 == kMostMirrors || on.largest() < kFaint) {
+                on.mirrors = ray.mirrors + 1, on.inside = ray.inside;
+                if (on.mirrors >= kMostMirrors || on.largest() < kFaint) {
                     const std::uint32_t irradiance = on.of_lobe > 0 && node != formats::kNone
                                                          ? tree.irradiance_node(node)
                                                          : formats::kNone;

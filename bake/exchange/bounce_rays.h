@@ -46,6 +46,7 @@ inline TrianglePlace triangle_of_hit(const PacketHits& hits, std::size_t lane) {
 /// A ray that meets a surface.
 struct RayEnd {
     glm::vec3 position{0}, direction{0};  ///< [m]; unit, of the ray
+    float distance = 0;                   ///< [m], from its origin
     float error = 0;                      ///< bound [m] on that of the position
     std::uint32_t material = 0;
     SeenSide side;
@@ -64,6 +65,7 @@ struct MirroredRay {
     /// of a medium's boundary.
     float of_lobe = 0;
     bool is_weak = false;  ///< that lobe: a coat that mirrors little of light along its normal
+    std::uint16_t mirrors = 0, inside = 0;  ///< of its way so far: mirrors; events inside media
 
     float largest() const { return std::max({share.r, share.g, share.b}); }
 };
@@ -98,9 +100,10 @@ struct MirroredNode {
     std::uint32_t number = 0;
 };
 
-/// Follows mirrored rays from mirror to mirror, a few times, and appends their hits to `found`. The
-/// last medium mirrors nothing; of the last lobe the light is that of its point from all sides,
-/// its node of irradiance. Returns the rays traced.
+/// Follows mirrored rays from mirror to mirror, a few times, and through media that they are inside
+/// of (inside_media.h), and appends their hits to `found`. The last medium mirrors nothing; of the
+/// last lobe the light is that of its point from all sides, its node of irradiance. Returns the
+/// rays traced.
 std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
                               std::vector<MirroredRay> open, std::vector<MirroredNode>& found);
 

@@ -72,6 +72,22 @@ void add_spread(const LightInputs& inputs, std::vector<Scatterer>& scatterers) {
     }
 }
 
+// Surfaces inside media, which no ray of a receiver need come to: points all over them.
+void add_points_inside(const LightInputs& inputs, std::vector<Scatterer>& scatterers) {
+    constexpr std::size_t kPoints = 256;
+    const formats::Scene& scene = inputs.bake.scene;
+    const BodiesAt bodies(scene, inputs.bake.rays.hierarchy());
+    if (bodies.order().empty()) return;
+    for (std::uint32_t m = 0; m < inputs.layouts.size(); ++m) {
+        if (scene.materials[m].medium || !sends_light(inputs.layouts[m])) continue;
+        std::vector<Scatterer> spread = spread_over_material(inputs, m, kPoints);
+        std::erase_if(spread, [&](const Scatterer& s) {
+            return bodies.material_at(s.position + 2 * bodies.touch() * s.normal) == formats::kNone;
+        });
+        scatterers.insert(scatterers.end(), spread.begin(), spread.end());
+    }
+}
+
 // The first material of those whose media meet or lie in each other, of each material.
 std::vector<std::uint32_t> group_media(const SceneFacts& facts) {
     std::vector<std::uint32_t> first(facts.material.size());
@@ -98,6 +114,7 @@ void add_patch(const PatchLight& light, const Receiver& at, std::span<float> row
 
 ExchangePoints place_exchange(const LightInputs& inputs, std::uint64_t& rays) {
     ExchangePoints points{find_scatterers(inputs, count_scatterers(inputs.rays_of_receiver), rays)};
+    add_points_inside(inputs, points.scatterers);
     if (points.scatterers.empty()) return points;
     add_spread(inputs, points.scatterers);
     const std::vector<std::uint32_t> first = group_media(inputs.bake.facts);

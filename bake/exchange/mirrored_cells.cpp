@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "bake/base/rng.h"
+#include "bake/exchange/inside_media.h"
 
 namespace opaline::bake {
 namespace {
@@ -30,11 +31,20 @@ MirroredCells::MirroredCells(const BounceSpace& space, const Receiver& at, const
       cuts_lobes_(cuts_lobes),
       parts_(count_parts(grid.count(), most_rays)) {}
 
+MirroredRay MirroredCells::go_on(const RayEnd& end, float share) const {
+    const formats::Rgb all{share, share, share};
+    return is_inside(space_, end) ? go_on_inside(space_, end, all, 0) : mirror(space_, end, all, 0);
+}
+
 std::uint32_t MirroredCells::add(const BounceEnd& end, float share) {
-    const glm::vec3 y = at_.origin + end.distance * end.direction;
-    const MirroredRay own =
-        mirror(space_, {y, end.direction, end.error, end.material, end.side, end.triangle},
-               {share, share, share}, 0);
+    const RayEnd met{.position = at_.origin + end.distance * end.direction,
+                     .direction = end.direction,
+                     .distance = end.distance,
+                     .error = end.error,
+                     .material = end.material,
+                     .side = end.side,
+                     .triangle = end.triangle};
+    const MirroredRay own = go_on(met, share);
     if (!(own.largest() > 0)) return formats::kNone;
     const std::size_t first = open_.size();
     open_.push_back(own);
@@ -48,7 +58,7 @@ std::uint32_t MirroredCells::add(const BounceEnd& end, float share) {
     for (std::size_t i = first; i < open_.size(); ++i) {
         open_[i].share = each * open_[i].share;
         open_[i].number = static_cast<std::uint32_t>(i);
-        of_hemisphere_.push_back(open_[i].of_lobe > 0 ? 0 : each * share);
+        of_hemisphere_.push_back(open_[i].of_lobe > 0 || open_[i].inside > 0 ? 0 : each * share);
         cell_.push_back(cell);
         mirrored_[cell] += open_[i].largest();
     }
@@ -81,8 +91,7 @@ void MirroredCells::add_parts(const BounceEnd& end, float share) {
     for (std::uint32_t part = 0; part < count; ++part) {
         if (hits.hit[part] == 0) continue;
         const glm::vec3 d = direction_of(packet, part);
-        const MirroredRay ray = mirror(space_, end_of_ray(space_.scene, at_.origin, d, hits, part),
-                                       {share, share, share}, 0);
+        const MirroredRay ray = go_on(end_of_ray(space_.scene, at_.origin, d, hits, part), share);
         if (ray.largest() > 0) {
             open_.push_back(ray);
         }

@@ -28,7 +28,8 @@ class MirroredCells {
                   const BounceGrid& grid, std::uint64_t seed, std::uint32_t most_rays,
                   bool cuts_lobes);
 
-    /// Adds the cell, with `share` of the point's irradiance, of an end that is met and seen.
+    /// Adds the cell, with `share` of the point's irradiance, of an end that is met; from inside a
+    /// medium as well, where a ray goes on through its boundary.
     /// Returns its number; formats::kNone of one that nothing mirrors.
     std::uint32_t add(const BounceEnd& end, float share);
 
@@ -48,6 +49,7 @@ class MirroredCells {
     bool is_lobe(std::uint32_t cell) const { return is_lobe_[cell] != 0; }
 
   private:
+    MirroredRay go_on(const RayEnd& end, float share) const;
     void add_parts(const BounceEnd& end, float share);
 
     const BounceSpace& space_;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "bake/exchange/bounce_rays.h"
+#include "bake/exchange/inside_media.h"
 #include "bake/exchange/true_lobe.h"
 #include "bake/plan/surface_albedo.h"
 #include "bake/receivers/surface_samples.h"
@@ -107,10 +108,21 @@ class TruePath {
     bool meet(glm::vec3 origin, glm::vec3 direction, float side_choice, Receiver& next,
               Rgb& weight) {
         const BounceLight& light = *truth_.light;
-        const PacketHits hits = closest_of_one(light.rays, origin, direction);
+        PacketHits hits = closest_of_one(light.rays, origin, direction);
         ++rays_;
+        for (std::uint32_t event = 0; hits.hit[0] != 0 && event < kMostInside; ++event) {
+            const RayEnd end = end_of_ray(light.scene, origin, direction, hits, 0);
+            if (!is_inside(light.space(), end)) break;
+            const MirroredRay on =
+                go_on_inside(light.space(), end, weight, 0, truth_.light->seed + 1);
+            origin = on.origin, direction = on.direction, weight = on.share;
+            if (!(on.largest() > 0)) return false;
+            hits = closest_of_one(light.rays, origin, direction);
+            ++rays_;
+            is_mirrored_ = true;
+        }
         const SeenSide side = hits.hit[0] != 0 ? side_of_hit(light.scene, hits, 0) : SeenSide{};
-        if (hits.hit[0] == 0 && lobe_) {
+        if (hits.hit[0] == 0 && lobe_ && !is_mirrored_) {
             add_smooth_sky(origin, direction, weight);
         } else if (hits.hit[0] == 0 && is_mirrored_) {
             add_node(light.tree.sky_node(direction), weight);
@@ -126,9 +138,10 @@ class TruePath {
             make_surface_point(light.scene, {hits.primitive[0], hits.first_index[0]},
                                {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
         if (is_medium) {
-            const MirroredRay ray = mirror(
-                light.space(), {point.position, direction, hits.error[0], hits.material[0], side},
-                {1, 1, 1}, 0);
+            const MirroredRay ray = mirror(light.space(),
+                                           {point.position, direction, hits.distance[0],
+                                            hits.error[0], hits.material[0], side},
+                                           {1, 1, 1}, 0);
             add_node(
                 light.tree.find(point.position, {hits.material[0], side.behind, side.normal}, 0),
                 share_of_radiosity(material, ray.largest()) * weight);

@@ -143,7 +143,8 @@ struct BackwardPath {
         const SeenSide side{true, false, normal, -glm::dot(glm::vec3(direction), normal)};
         const MirroredRay ray =
             mirror({check.scene, check.rays},
-                   {place, glm::vec3(direction), static_cast<float>(at.error), at.material, side},
+                   {place, glm::vec3(direction), static_cast<float>(at.distance),
+                    static_cast<float>(at.error), at.material, side},
                    {1, 1, 1}, 0);
         sum += static_cast<double>(
                    share_of_radiosity(check.scene.materials[at.material], ray.largest())) *

@@ -136,7 +136,7 @@ PointViews follow_views(const StraightBody& body, const BodyPoint& point,
 // Of even light, what arrives from the sky and from surfaces, in the brightest band.
 double share_found(const PointViews& own, std::uint32_t bands) {
     std::array<double, 3> share{};
-    for (const auto* exits : {&own.found.exits, &own.found.blocked}) {
+    for (const auto* exits : {&own.found.exits, &own.found.blocked, &own.found.inside}) {
         for (const StraightExit& exit : *exits) {
             for (std::uint32_t b = 0; b < bands; ++b) {
                 share[b] += own.set.weight[exit.view] * static_cast<double>(exit.weight[b]);
@@ -197,7 +197,9 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
     const PointViews own = follow_enough(body, point, views, rays);
     const auto& set = own.set;
     const auto& found = own.found;
-    const bool sees_surfaces = surfaces != nullptr && !found.blocked.empty();
+    const std::array<const std::vector<StraightExit>*, 2> met{&found.blocked, &found.inside};
+    const bool sees_surfaces =
+        surfaces != nullptr && !(found.blocked.empty() && found.inside.empty());
     if (found.exits.empty() && !sees_surfaces) return rays;
     const std::uint32_t terms = straight_terms(layout);
     std::vector<float> factors = fit_rows(set, layout);
@@ -213,7 +215,9 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         };
         limit_with(found.exits);
         if (sees_surfaces) {
-            limit_with(found.blocked);  // before surfaces as bright as the sky
+            for (const auto* some : met) {
+                limit_with(*some);  // before surfaces as bright as the sky
+            }
         }
     }
     Splat splat(row, terms, spread_cosine(views));
@@ -229,9 +233,11 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
     splat.add_to(row);
     if (sees_surfaces) {
         std::vector<SurfaceView> looks;
-        looks.reserve(found.blocked.size());
-        for (const StraightExit& exit : found.blocked) {
-            looks.push_back({exit.origin, exit.direction, exit.weight, factors_of(exit)});
+        looks.reserve(found.blocked.size() + found.inside.size());
+        for (const auto* some : met) {
+            for (const StraightExit& exit : *some) {
+                looks.push_back({exit.origin, exit.direction, exit.weight, factors_of(exit)});
+            }
         }
         rays += add_seen_light(*surfaces, looks, solid_angle_of(views), row.cubemap_size, row.bands,
                                row.values);
@@ -279,14 +285,15 @@ CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std
     const StraightStart start = make_straight_start(body, point, rays);
     const PointViews own = follow_views(body, point, start, views, rays);
     const double leaves = 1 - fresnel_moments(body.eta).external;
-    crossing.views.reserve(own.found.blocked.size());
-    for (const StraightExit& exit : own.found.blocked) {
-        const auto share = static_cast<float>(leaves * own.set.weight[exit.view]);
-        SurfaceView view{exit.origin, exit.direction, {}, {}};
-        for (std::size_t b = 0; b < view.weight.size(); ++b) {
-            view.weight[b] = share * exit.weight[body.bands == 1 ? 0 : b];
+    for (const auto* some : {&own.found.blocked, &own.found.inside}) {
+        for (const StraightExit& exit : *some) {
+            const auto share = static_cast<float>(leaves * own.set.weight[exit.view]);
+            SurfaceView view{exit.origin, exit.direction, {}, {}};
+            for (std::size_t b = 0; b < view.weight.size(); ++b) {
+                view.weight[b] = share * exit.weight[body.bands == 1 ? 0 : b];
+            }
+            crossing.views.push_back(view);
         }
-        crossing.views.push_back(view);
     }
     return crossing;
 }
