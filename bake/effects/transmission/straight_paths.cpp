@@ -150,10 +150,8 @@ class Follower {
         const std::uint16_t own = body_.place_of[body_.material];
         if (place == kNoPlace || (body_.ends_at_others && place != own)) {
             StraightExit met{lane.view, lane.direction, lane.weight, lane.position};
-            const float eta = medium_of(lane).eta;
-            for (float& weight : met.weight) {
-                weight /= eta * eta;
-            }
+            met.eta = medium_of(lane).eta;
+            met.is_opaque = !body_.scene->materials[hits.material[i]].medium;
             found_.inside.push_back(met);
             return false;
         }

@@ -64,13 +64,15 @@ struct StraightExit {
     glm::vec3 direction{0};         ///< unit, outside, away from the body
     std::array<float, 3> weight{};  ///< per band: attenuated, transmitted, of radiance over eta^2
     glm::vec3 origin{0};            ///< [m], clear of the boundary
+    float eta = 1;                  ///< where the light comes from
+    bool is_opaque = false;         ///< of an end inside: it is no medium
 };
 
 /// What a set of views finds, not in their order.
 struct StraightLight {
     std::vector<StraightExit> exits;    ///< into the sky
     std::vector<StraightExit> blocked;  ///< toward something that stands before the sky
-    std::vector<StraightExit> inside;   ///< at what is no medium, from before it: over eta^2
+    std::vector<StraightExit> inside;   ///< at what views do not cross, from before it
     /// Views that leave at once through a triangle of their own vertex: a smooth surface has none
     /// of these.
     std::vector<std::uint32_t> past;

@@ -236,6 +236,7 @@ std::uint64_t add_straight(const StraightBody& body, const BodyPoint& point, std
         looks.reserve(found.blocked.size() + found.inside.size());
         for (const auto* some : met) {
             for (const StraightExit& exit : *some) {
+                if (some == &found.inside && !exit.is_opaque) continue;  // walks have its light
                 looks.push_back({exit.origin, exit.direction, exit.weight, factors_of(exit)});
             }
         }
@@ -258,7 +259,11 @@ std::uint64_t add_straight_lamps(const StraightBody& body, const BodyPoint& poin
         for (const StraightExit& exit : *some) {
             const auto factor =
                 std::span<const float>(factors).subspan(std::size_t{exit.view} * terms, terms);
-            looks.push_back({exit.origin, exit.direction, exit.weight, factor});
+            std::array<float, 3> weight = exit.weight;
+            for (float& w : weight) {
+                w /= exit.eta * exit.eta;
+            }
+            looks.push_back({exit.origin, exit.direction, weight, factor});
         }
     }
     std::vector<float> values(std::size_t{terms} * row.bands * row.size());
@@ -287,6 +292,7 @@ CrossingViews look_through(const StraightBody& body, const BodyPoint& point, std
     const double leaves = 1 - fresnel_moments(body.eta).external;
     for (const auto* some : {&own.found.blocked, &own.found.inside}) {
         for (const StraightExit& exit : *some) {
+            if (some == &own.found.inside && !exit.is_opaque) continue;
             const auto share = static_cast<float>(leaves * own.set.weight[exit.view]);
             SurfaceView view{exit.origin, exit.direction, {}, {}};
             for (std::size_t b = 0; b < view.weight.size(); ++b) {
