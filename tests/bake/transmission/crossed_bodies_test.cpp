@@ -204,7 +204,7 @@ TEST(CrossedBodies, ALampInTwoMediaIsSeenOverTheSquareOfTheIndexThatIsAroundIt) 
                     found);
     double sum = 0;
     for (const StraightExit& exit : found.inside) {
-        sum += double{exit.weight[0]};
+        sum += double{exit.weight[0]} / double{exit.eta * exit.eta};
     }
     // Of 1 less what the interface reflects, 0.4 % along the normal, by chance.
     EXPECT_NEAR(sum, 1 / (1.5 * 1.5), 1e-3);
