@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "bake/exchange/bounce_rays.h"
+#include "bake/exchange/inside_media.h"
 #include "bake/exchange/mirrored_cells.h"
 #include "formats/opal/haar.h"
 
@@ -137,8 +138,17 @@ BounceGather weigh_bounces(const BounceSpace& space, const BounceTree& tree, con
                            look_up == LookUp::nearest ? kOfScatterers : kMirroredRays,
                            look_up != LookUp::nearest);
     std::vector<std::uint32_t> mirroring(ends.size(), formats::kNone);  // of each end, its number
+    const std::uint32_t medium = medium_around(space, at);
+    const bool is_changed =
+        medium != formats::kNone && changes_light(*space.scene.materials[medium].medium);
+    const auto goes_on = [&](const BounceEnd& end) {
+        return is_changed || is_inside(space, end.material, end.side);
+    };
     for (std::size_t i = 0; i < ends.size(); ++i) {
-        if (ends[i].is_met) {
+        if (!ends[i].is_met) continue;
+        if (goes_on(ends[i])) {
+            mirrored.add_inside(ends[i], share_of(ends[i]), medium);
+        } else if (ends[i].side.is_seen) {
             mirroring[i] = mirrored.add(ends[i], share_of(ends[i]));
         }
     }
@@ -150,7 +160,7 @@ BounceGather weigh_bounces(const BounceSpace& space, const BounceTree& tree, con
         const float near = 1 / std::max(end.distance, kNoDistance);
         gathered.nearness += share * near * near;
         gathered.met += share;
-        if (!end.side.is_seen) continue;
+        if (!end.side.is_seen || goes_on(end)) continue;
         const BounceCell& cell = (end.is_quarter ? grid.quarters : grid.cells)[end.cell];
         const SurfaceSide wanted{end.material, end.side.behind, end.side.normal};
         const FootprintKernel kernel = footprint_of(at.origin, end, cell, frame);

@@ -185,7 +185,7 @@ std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
             traced += some.size();
             const PacketHits hits = closest_of(space.rays, some);
             for (std::size_t i = 0; i < some.size(); ++i) {
-                const MirroredRay& ray = some[i];
+                MirroredRay ray = some[i];
                 if (hits.hit[i] == 0) {
                     if (ray.of_lobe > 0) {
                         for (const glm::vec3& d : spread_over_texel(ray.direction)) {
@@ -197,10 +197,8 @@ std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
                     continue;
                 }
                 const RayEnd end = end_of_ray(space.scene, ray.origin, ray.direction, hits, i);
-                if (is_inside(space, end)) {
-                    MirroredRay on = go_on_inside(space, end, ray.share, ray.number);
-                    on.mirrors = ray.mirrors, on.inside = ray.inside + 1;
-                    if (on.inside < kMostInside && !(on.largest() < kFaint)) next.push_back(on);
+                if (go_on_inside(space, end, ray)) {
+                    if (ray.inside < kMostInside && !(ray.largest() < kFaint)) next.push_back(ray);
                     continue;
                 }
                 if (!end.side.is_seen) continue;
@@ -208,7 +206,7 @@ std::uint64_t follow_mirrored(const BounceSpace& space, const BounceTree& tree,
                     tree.find(end.position - end.triangle.offset,
                               {end.material, end.side.behind, end.side.normal}, 0);
                 MirroredRay on = mirror(space, end, ray.share, ray.number);
-                on.mirrors = ray.mirrors + 1, on.inside = ray.inside;
+                on.mirrors = ray.mirrors + 1, on.inside = ray.inside, on.medium = ray.medium;
                 if (on.mirrors >= kMostMirrors || on.largest() < kFaint) {
                     const std::uint32_t irradiance = on.of_lobe > 0 && node != formats::kNone
                                                          ? tree.irradiance_node(node)

@@ -65,7 +65,8 @@ struct MirroredRay {
     /// of a medium's boundary.
     float of_lobe = 0;
     bool is_weak = false;  ///< that lobe: a coat that mirrors little of light along its normal
-    std::uint16_t mirrors = 0, inside = 0;  ///< of its way so far: mirrors; events inside media
+    std::uint32_t medium = formats::kNone;  ///< material of the medium that it is inside of
+    std::uint16_t mirrors = 0, inside = 0;  ///< of its way so far: mirrors; flights inside media
 
     float largest() const { return std::max({share.r, share.g, share.b}); }
 };

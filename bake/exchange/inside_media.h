@@ -3,22 +3,32 @@
 #include <cstdint>
 
 #include "bake/exchange/bounce_rays.h"
+#include "bake/receivers/receiver.h"
+#include "formats/scene.h"
 
 namespace opaline::bake {
 
-/// Whether a ray has met the boundary of a medium from inside. Not where walks go through several
+/// Whether a ray meets the boundary of a medium from inside. Not where walks go through several
 /// media as one space: these bring their own light there.
-bool is_inside(const BounceSpace& space, const RayEnd& end);
+bool is_inside(const BounceSpace& space, std::uint32_t material, const SeenSide& side);
+
+/// The material whose medium a surface lies in, as the first of some rays from it says that meets
+/// such a boundary from inside; formats::kNone: none does.
+std::uint32_t medium_around(const BounceSpace& space, const Receiver& at);
+
+/// Whether light changes on its way through the medium: it is scattered or absorbed.
+bool changes_light(const formats::Medium& medium);
 
 /// Events of one ray inside media that are followed; in denser ones the rest of its light is lost.
 inline constexpr std::uint32_t kMostInside = 1024;
 
-/// How the ray goes on: a scattering before the boundary, refracted out of it, or reflected. With
-/// `share` of the first ray's radiance over index squared, less what the medium absorbs on the way.
-/// Light scatters alike in all directions, with (1 - g) sigma_s (similarity [Wyman1989]); the
-/// boundary is smooth, and flat in each triangle. By chance, drawn by the ray's place, direction
-/// and `seed`. Precondition: is_inside.
-MirroredRay go_on_inside(const BounceSpace& space, const RayEnd& end, const formats::Rgb& share,
-                         std::uint32_t number, std::uint64_t seed = 0);
+/// Takes a ray on where it is in a medium before it has met `end`, or meets a boundary from inside:
+/// it is scattered before, refracted out there, or reflected, by chance, which the ray's place,
+/// direction and `seed` draw. Light scatters alike in all directions, with (1 - g) sigma_s
+/// (similarity [Wyman1989]); the boundary is smooth, and flat in each triangle. The share is that
+/// of the first ray's radiance over index squared.
+/// False: it arrives at `end`, with what the medium leaves of it.
+bool go_on_inside(const BounceSpace& space, const RayEnd& end, MirroredRay& ray,
+                  std::uint64_t seed = 0);
 
 }  // namespace opaline::bake

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "bake/base/rng.h"
-#include "bake/exchange/inside_media.h"
 
 namespace opaline::bake {
 namespace {
@@ -31,67 +30,86 @@ MirroredCells::MirroredCells(const BounceSpace& space, const Receiver& at, const
       cuts_lobes_(cuts_lobes),
       parts_(count_parts(grid.count(), most_rays)) {}
 
-MirroredRay MirroredCells::go_on(const RayEnd& end, float share) const {
-    const formats::Rgb all{share, share, share};
-    return is_inside(space_, end) ? go_on_inside(space_, end, all, 0) : mirror(space_, end, all, 0);
-}
-
 std::uint32_t MirroredCells::add(const BounceEnd& end, float share) {
-    const RayEnd met{.position = at_.origin + end.distance * end.direction,
-                     .direction = end.direction,
-                     .distance = end.distance,
-                     .error = end.error,
-                     .material = end.material,
-                     .side = end.side,
-                     .triangle = end.triangle};
-    const MirroredRay own = go_on(met, share);
+    const glm::vec3 y = at_.origin + end.distance * end.direction;
+    const MirroredRay own = mirror(
+        space_, {y, end.direction, end.distance, end.error, end.material, end.side, end.triangle},
+        {share, share, share}, 0);
     if (!(own.largest() > 0)) return formats::kNone;
     const std::size_t first = open_.size();
     open_.push_back(own);
     if (parts_ > 1 && !end.is_quarter && (own.of_lobe == 0 || (cuts_lobes_ && !own.is_weak))) {
         add_parts(end, share);
     }
+    return number_from(first, share, own.of_lobe > 0);
+}
+
+// Makes one cell of the rays from `first` on, which share its light.
+std::uint32_t MirroredCells::number_from(std::size_t first, float of_hemisphere, bool is_lobe) {
     const float each = 1 / static_cast<float>(open_.size() - first);
     const auto cell = static_cast<std::uint32_t>(mirrored_.size());
     mirrored_.push_back(0);
-    is_lobe_.push_back(own.of_lobe > 0 ? 1 : 0);
+    is_lobe_.push_back(is_lobe ? 1 : 0);
     for (std::size_t i = first; i < open_.size(); ++i) {
         open_[i].share = each * open_[i].share;
         open_[i].number = static_cast<std::uint32_t>(i);
-        of_hemisphere_.push_back(open_[i].of_lobe > 0 || open_[i].inside > 0 ? 0 : each * share);
+        of_hemisphere_.push_back(open_[i].of_lobe > 0 ? 0 : each * of_hemisphere);
         cell_.push_back(cell);
         mirrored_[cell] += open_[i].largest();
     }
     return cell;
 }
 
-// One ray in each part but that of the cell's own ray.
-void MirroredCells::add_parts(const BounceEnd& end, float share) {
+void MirroredCells::add_inside(const BounceEnd& end, float share, std::uint32_t medium) {
+    const std::size_t first = open_.size();
+    const auto start = [&](const glm::vec3& direction) {
+        open_.push_back({.origin = at_.origin,
+                         .direction = direction,
+                         .share = {share, share, share},
+                         .medium = medium});
+    };
+    start(end.direction);
+    if (parts_ > 1 && !end.is_quarter) {
+        visit_parts(end.cell, [&](std::uint32_t, const glm::vec3& direction) { start(direction); });
+    }
+    number_from(first, 0, false);
+}
+
+// A direction in each part of the cell but that of its own ray.
+template <class Visit>
+void MirroredCells::visit_parts(std::uint32_t cell, Visit&& visit) const {
     const std::uint32_t count = parts_ * parts_;
     const auto per_side = static_cast<float>(parts_);
     const float width = 1 / (static_cast<float>(grid_.side) * per_side);
-    const std::uint32_t column = end.cell % grid_.side, row = end.cell / grid_.side;
+    const std::uint32_t column = cell % grid_.side, row = cell / grid_.side;
     const glm::vec2 place = place_in_cell(grid_, seed_, key_, row, column);
     const std::uint32_t taken = static_cast<std::uint32_t>(place.y * per_side) * parts_ +
                                 static_cast<std::uint32_t>(place.x * per_side);
-    RayPacket packet = rays_from(at_.origin);
-    LaneMask lanes{};
     for (std::uint32_t part = 0; part < count; ++part) {
         if (part == taken) continue;
         const std::uint32_t part_row = part / parts_;
-        const auto u = random_uniform(seed_, RandomStage::bounce_rays, key_,
-                                      kOfParts + end.cell * count + part);
+        const auto u =
+            random_uniform(seed_, RandomStage::bounce_rays, key_, kOfParts + cell * count + part);
         const auto across = static_cast<float>(column * parts_ + part % parts_) + u[0];
         const auto along = static_cast<float>(row * parts_ + part_row) + u[1];
-        set_lane(packet, lanes, part,
-                 frame_.to_world(to_hemisphere(across * width, along * width)));
+        visit(part, frame_.to_world(to_hemisphere(across * width, along * width)));
     }
+}
+
+void MirroredCells::add_parts(const BounceEnd& end, float share) {
+    RayPacket packet = rays_from(at_.origin);
+    LaneMask lanes{};
+    visit_parts(end.cell, [&](std::uint32_t part, const glm::vec3& direction) {
+        set_lane(packet, lanes, part, direction);
+    });
     const PacketHits hits = space_.rays.closest(lanes, packet);
+    const std::uint32_t count = parts_ * parts_;
     traced_ += count - 1;
     for (std::uint32_t part = 0; part < count; ++part) {
         if (hits.hit[part] == 0) continue;
         const glm::vec3 d = direction_of(packet, part);
-        const MirroredRay ray = go_on(end_of_ray(space_.scene, at_.origin, d, hits, part), share);
+        const MirroredRay ray = mirror(space_, end_of_ray(space_.scene, at_.origin, d, hits, part),
+                                       {share, share, share}, 0);
         if (ray.largest() > 0) {
             open_.push_back(ray);
         }

@@ -28,10 +28,12 @@ class MirroredCells {
                   const BounceGrid& grid, std::uint64_t seed, std::uint32_t most_rays,
                   bool cuts_lobes);
 
-    /// Adds the cell, with `share` of the point's irradiance, of an end that is met; from inside a
-    /// medium as well, where a ray goes on through its boundary.
+    /// Adds the cell, with `share` of the point's irradiance, of an end that is met and seen.
     /// Returns its number; formats::kNone of one that nothing mirrors.
     std::uint32_t add(const BounceEnd& end, float share);
+    /// The same of an end whose ray goes through the medium around the point, and on out of it
+    /// (go_on_inside): the cell has no light of its own.
+    void add_inside(const BounceEnd& end, float share, std::uint32_t medium);
 
     /// Appends what the cells mirror, and returns the rays that were traced.
     ///
@@ -49,8 +51,10 @@ class MirroredCells {
     bool is_lobe(std::uint32_t cell) const { return is_lobe_[cell] != 0; }
 
   private:
-    MirroredRay go_on(const RayEnd& end, float share) const;
     void add_parts(const BounceEnd& end, float share);
+    template <class Visit>
+    void visit_parts(std::uint32_t cell, Visit&& visit) const;
+    std::uint32_t number_from(std::size_t first, float of_hemisphere, bool is_lobe);
 
     const BounceSpace& space_;
     const Receiver& at_;

@@ -107,8 +107,8 @@ void weigh_through(const Field& field, const BounceTree& tree, const CrossingVie
     field.light.emitted.set(i, to);
 }
 
-// Light of the sky by way of lobes does not change from bounce to bounce: it becomes part of what
-// the scatterer has at once.
+// Light of the sky by way of mirrors and through media does not change from bounce to bounce: it
+// becomes part of what the scatterer has at once.
 void complete_by_mirrored_sky(const Field& field, const BounceTree& tree, std::size_t i,
                               std::uint32_t lobe, Arrivals& arrivals) {
     const std::uint32_t bands = field.light.bands;
@@ -207,7 +207,7 @@ std::vector<Arrivals> weigh_scatterers(const LightInputs& inputs,
                 if (field.passes_light(i)) {
                     traced += weigh(s.beyond, field.light.open_beyond[i], arrivals[i].back);
                 }
-                if (tree.has_lobes() && !field.inputs.layouts[s.material].translucent) {
+                if (!field.inputs.layouts[s.material].translucent) {
                     complete_by_mirrored_sky(field, tree, i, lobe[i], arrivals[i]);
                 }
                 if (through[i] != nullptr) {

@@ -33,14 +33,21 @@ float largest(Rgb c) {
 
 class TruePath {
   public:
-    TruePath(const BounceTruth& truth, std::uint64_t key, std::span<double> irradiance)
-        : truth_(truth), key_(key), irradiance_(irradiance), from_sky_(irradiance.size()) {}
+    // `first_medium`: around where the paths begin.
+    TruePath(const BounceTruth& truth, std::uint32_t first_medium, std::uint64_t key,
+             std::span<double> irradiance)
+        : truth_(truth),
+          first_medium_(first_medium),
+          key_(key),
+          irradiance_(irradiance),
+          from_sky_(irradiance.size()) {}
 
     // One path of `count`, the number-th.
     std::uint64_t follow(Receiver from, std::uint32_t number, std::uint32_t count) {
         Rgb weight = (1 / static_cast<float>(count)) * Rgb{1, 1, 1};
         rays_ = 0;
         is_mirrored_ = false;
+        medium_ = first_medium_;
         lobe_.reset();
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
             auto u = random_of(number, depth);
@@ -63,6 +70,7 @@ class TruePath {
         if (!(most > 0)) return rays_;
         Receiver from;
         is_mirrored_ = false;
+        medium_ = first_medium_;
         lobe_.reset();
         for (std::uint32_t depth = 0; depth < kMostDepth; ++depth) {
             const auto u = random_of(number, depth);
@@ -110,17 +118,19 @@ class TruePath {
         const BounceLight& light = *truth_.light;
         PacketHits hits = closest_of_one(light.rays, origin, direction);
         ++rays_;
-        for (std::uint32_t event = 0; hits.hit[0] != 0 && event < kMostInside; ++event) {
-            const RayEnd end = end_of_ray(light.scene, origin, direction, hits, 0);
-            if (!is_inside(light.space(), end)) break;
-            const MirroredRay on =
-                go_on_inside(light.space(), end, weight, 0, truth_.light->seed + 1);
-            origin = on.origin, direction = on.direction, weight = on.share;
-            if (!(on.largest() > 0)) return false;
-            hits = closest_of_one(light.rays, origin, direction);
+        MirroredRay ray{
+            .origin = origin, .direction = direction, .share = weight, .medium = medium_};
+        while (hits.hit[0] != 0 &&
+               go_on_inside(light.space(),
+                            end_of_ray(light.scene, ray.origin, ray.direction, hits, 0), ray,
+                            light.seed + 1)) {
+            if (!(ray.largest() > 0) || ray.inside >= kMostInside) return false;
+            hits = closest_of_one(light.rays, ray.origin, ray.direction);
             ++rays_;
             is_mirrored_ = true;
         }
+        origin = ray.origin, direction = ray.direction, weight = ray.share;
+        medium_ = ray.medium;
         const SeenSide side = hits.hit[0] != 0 ? side_of_hit(light.scene, hits, 0) : SeenSide{};
         if (hits.hit[0] == 0 && lobe_ && !is_mirrored_) {
             add_smooth_sky(origin, direction, weight);
@@ -138,16 +148,16 @@ class TruePath {
             make_surface_point(light.scene, {hits.primitive[0], hits.first_index[0]},
                                {1 - hits.u[0] - hits.v[0], hits.u[0], hits.v[0]});
         if (is_medium) {
-            const MirroredRay ray = mirror(light.space(),
-                                           {point.position, direction, hits.distance[0],
-                                            hits.error[0], hits.material[0], side},
-                                           {1, 1, 1}, 0);
+            const MirroredRay on = mirror(light.space(),
+                                          {point.position, direction, hits.distance[0],
+                                           hits.error[0], hits.material[0], side},
+                                          {1, 1, 1}, 0);
             add_node(
                 light.tree.find(point.position, {hits.material[0], side.behind, side.normal}, 0),
-                share_of_radiosity(material, ray.largest()) * weight);
-            next = {ray.origin, ray.direction};
-            weight = ray.largest() * weight;
-            is_mirrored_ = ray.largest() > 0;
+                share_of_radiosity(material, on.largest()) * weight);
+            next = {on.origin, on.direction};
+            weight = on.largest() * weight;
+            is_mirrored_ = on.largest() > 0;
             return is_mirrored_;
         }
         const SurfaceSample sample = make_surface_sample(light.scene, point, 0);
@@ -243,12 +253,14 @@ class TruePath {
     }
 
     const BounceTruth& truth_;
+    std::uint32_t first_medium_;
     std::uint64_t key_;
     std::span<double> irradiance_;
     std::vector<double> from_sky_;
     std::uint64_t rays_ = 0;
-    bool is_mirrored_ = false;      // where the path goes next is known
-    std::optional<TrueLobe> lobe_;  // or in which lobe
+    std::uint32_t medium_ = formats::kNone;  // that the path is inside of
+    bool is_mirrored_ = false;               // where the path goes next is known
+    std::optional<TrueLobe> lobe_;           // or in which lobe
 };
 
 }  // namespace
@@ -270,7 +282,7 @@ BounceTruth make_bounce_truth(std::shared_ptr<const BounceLight> light,
 std::uint64_t add_true_bounces(const BounceTruth& truth, const Receiver& at, std::uint64_t key,
                                std::uint32_t count, std::span<double> irradiance) {
     std::uint64_t rays = 0;
-    TruePath path(truth, key, irradiance);
+    TruePath path(truth, medium_around(truth.light->space(), at), key, irradiance);
     for (std::uint32_t i = 0; i < count; ++i) {
         rays += path.follow(at, i, count);
     }
@@ -279,7 +291,7 @@ std::uint64_t add_true_bounces(const BounceTruth& truth, const Receiver& at, std
 
 std::uint64_t add_true_view(const BounceTruth& truth, const Receiver& along, Rgb weight,
                             std::uint64_t key, std::uint32_t number, std::span<double> luminance) {
-    return TruePath(truth, key, luminance)
+    return TruePath(truth, medium_around(truth.light->space(), along), key, luminance)
         .look(along, std::numbers::inv_pi_v<float> * weight, number);
 }
 
