@@ -132,22 +132,22 @@ BounceGather weigh_bounces(const BounceSpace& space, const BounceTree& tree, con
     const auto share_of = [&](const BounceEnd& end) {
         return 1 / static_cast<float>(end.is_quarter ? 4 * grid.count() : grid.count());
     };
-    // What one scatterer errs by is averaged over again.
+    const MediumAround around = medium_around(space, at);
+    const bool is_changed = around.material != formats::kNone &&
+                            changes_light(*space.scene.materials[around.material].medium);
+    // What one scatterer errs by is averaged over again. Walks of light are dear.
     constexpr std::uint32_t kMirroredRays = 1024, kOfScatterers = 256;
     MirroredCells mirrored(space, at, frame, grid, seed,
-                           look_up == LookUp::nearest ? kOfScatterers : kMirroredRays,
+                           look_up == LookUp::nearest || is_changed ? kOfScatterers : kMirroredRays,
                            look_up != LookUp::nearest);
     std::vector<std::uint32_t> mirroring(ends.size(), formats::kNone);  // of each end, its number
-    const std::uint32_t medium = medium_around(space, at);
-    const bool is_changed =
-        medium != formats::kNone && changes_light(*space.scene.materials[medium].medium);
     const auto goes_on = [&](const BounceEnd& end) {
         return is_changed || is_inside(space, end.material, end.side);
     };
     for (std::size_t i = 0; i < ends.size(); ++i) {
         if (!ends[i].is_met) continue;
         if (goes_on(ends[i])) {
-            mirrored.add_inside(ends[i], share_of(ends[i]), medium);
+            if (!around.is_deep) mirrored.add_inside(ends[i], share_of(ends[i]), around.material);
         } else if (ends[i].side.is_seen) {
             mirroring[i] = mirrored.add(ends[i], share_of(ends[i]));
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
@@ -22,6 +23,10 @@ Bands bands_of(const formats::Rgb& c) {
     return {c.r, c.g, c.b};
 }
 
+Bands isotropic_scattering(const formats::Medium& medium) {
+    return bands_of(static_cast<float>(1 - formats::mean_cosine(medium.phase)) * medium.sigma_s);
+}
+
 struct Flight {
     std::optional<float> length{};  // [m] to a scattering; none: to the boundary
     Bands share{};
@@ -31,8 +36,7 @@ struct Flight {
 // all of them weighs it, so that no flight makes the sum over bands larger.
 Flight draw_flight(const formats::Medium& medium, const Bands& share, float distance, float u,
                    float v) {
-    const auto isotropic = static_cast<float>(1 - formats::mean_cosine(medium.phase));
-    const Bands sigma_s = bands_of(isotropic * medium.sigma_s), sigma_a = bands_of(medium.sigma_a);
+    const Bands sigma_s = isotropic_scattering(medium), sigma_a = bands_of(medium.sigma_a);
     Bands sigma_t{};
     for (std::size_t b = 0; b < 3; ++b) {
         sigma_t[b] = sigma_s[b] + sigma_a[b];
@@ -82,9 +86,9 @@ bool changes_light(const formats::Medium& medium) {
     return medium.sigma_s != formats::Rgb{} || medium.sigma_a != formats::Rgb{};
 }
 
-std::uint32_t medium_around(const BounceSpace& space, const Receiver& at) {
+MediumAround medium_around(const BounceSpace& space, const Receiver& at) {
     const auto holds = [&](const formats::Material& m) { return m.medium && !m.sheet; };
-    if (std::ranges::none_of(space.scene.materials, holds)) return formats::kNone;
+    if (std::ranges::none_of(space.scene.materials, holds)) return {};
     const Frame frame = make_frame(at.normal);
     RayPacket packet = rays_from(at.origin);
     LaneMask lanes{};
@@ -95,13 +99,22 @@ std::uint32_t medium_around(const BounceSpace& space, const Receiver& at) {
         set_lane(packet, lanes, i, frame.to_world(to_hemisphere(u, v)));
     }
     const PacketHits hits = space.rays.closest(lanes, packet);
+    constexpr float kDeep = 32;
+    MediumAround around;
+    float nearest = std::numeric_limits<float>::infinity();
     for (std::size_t i = 0; i < kRays; ++i) {
-        if (hits.hit[i] != 0 &&
-            is_inside(space, hits.material[i], side_of_hit(space.scene, hits, i))) {
-            return hits.material[i];
+        if (hits.hit[i] == 0 ||
+            !is_inside(space, hits.material[i], side_of_hit(space.scene, hits, i))) {
+            continue;
         }
+        if (around.material == formats::kNone) around.material = hits.material[i];
+        nearest = std::min(nearest, hits.distance[i]);
     }
-    return formats::kNone;
+    if (around.material != formats::kNone) {
+        const Bands sigma_s = isotropic_scattering(*space.scene.materials[around.material].medium);
+        around.is_deep = nearest * std::ranges::min(sigma_s) > kDeep;
+    }
+    return around;
 }
 
 bool go_on_inside(const BounceSpace& space, const RayEnd& end, MirroredRay& ray,

@@ -12,9 +12,14 @@ namespace opaline::bake {
 /// media as one space: these bring their own light there.
 bool is_inside(const BounceSpace& space, std::uint32_t material, const SeenSide& side);
 
-/// The material whose medium a surface lies in, as the first of some rays from it says that meets
-/// such a boundary from inside; formats::kNone: none does.
-std::uint32_t medium_around(const BounceSpace& space, const Receiver& at);
+/// The medium that a surface lies in, as rays from it say that meet such a boundary from inside.
+struct MediumAround {
+    std::uint32_t material = formats::kNone;  ///< none
+    /// No boundary is nearer than 32 mean free paths (similarity): nobody sees light from there,
+    /// and none is followed.
+    bool is_deep = false;
+};
+MediumAround medium_around(const BounceSpace& space, const Receiver& at);
 
 /// Whether light changes on its way through the medium: it is scattered or absorbed.
 bool changes_light(const formats::Medium& medium);

@@ -282,7 +282,9 @@ BounceTruth make_bounce_truth(std::shared_ptr<const BounceLight> light,
 std::uint64_t add_true_bounces(const BounceTruth& truth, const Receiver& at, std::uint64_t key,
                                std::uint32_t count, std::span<double> irradiance) {
     std::uint64_t rays = 0;
-    TruePath path(truth, medium_around(truth.light->space(), at), key, irradiance);
+    const MediumAround around = medium_around(truth.light->space(), at);
+    if (around.is_deep) return 0;
+    TruePath path(truth, around.material, key, irradiance);
     for (std::uint32_t i = 0; i < count; ++i) {
         rays += path.follow(at, i, count);
     }
@@ -291,7 +293,7 @@ std::uint64_t add_true_bounces(const BounceTruth& truth, const Receiver& at, std
 
 std::uint64_t add_true_view(const BounceTruth& truth, const Receiver& along, Rgb weight,
                             std::uint64_t key, std::uint32_t number, std::span<double> luminance) {
-    return TruePath(truth, medium_around(truth.light->space(), along), key, luminance)
+    return TruePath(truth, medium_around(truth.light->space(), along).material, key, luminance)
         .look(along, std::numbers::inv_pi_v<float> * weight, number);
 }
 
