@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 
+#include "bake/base/frame.h"
 #include "bake/effects/multiple/walks/find_hit.h"
 #include "bake/effects/multiple/walks/free_ball.h"
 #include "bake/effects/multiple/walks/walk_boundary.h"
+#include "bake/exchange/bounce_rays.h"
 #include "bake/physics/fresnel.h"
 
 namespace opaline::bake {
@@ -167,6 +169,19 @@ class Walk {
         return false;
     }
 
+    // Off a thing inside. What has not scattered ends: `transmission` has it.
+    bool reflect(const WalkHit& hit) {
+        const auto found = reflect_at(space_, hit, direction_, random_.next());
+        if (!found) return meet();
+        length_ += glm::distance(hit.position, position_);
+        free_.set(hit.position, 0, 0);
+        is_reflected_ = true;
+        position_ = hit.position + 2 * hit.error * found->normal;
+        const float u = random_.next();
+        direction_ = make_frame(found->normal).to_world(to_hemisphere(u, random_.next()));
+        return weight_.absorb(found->albedo) && survives();
+    }
+
     // A flight from the start. Where a body is thin, nearly all light crosses it unscattered and is
     // not counted: half of the walks scatter before the first surface (BandWeights).
     bool fly_first() {
@@ -240,7 +255,7 @@ class Walk {
     }
 
     bool arrive(const WalkHit& hit) {
-        if (hit.medium == kNoWalkMedium) return meet();
+        if (hit.medium == kNoWalkMedium) return is_scattered_ ? reflect(hit) : meet();
         const float way = glm::distance(hit.position, position_);
         length_ += way;
         free_.set(hit.position, 0, 0);
