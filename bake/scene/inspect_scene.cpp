@@ -70,6 +70,23 @@ void inspect_primitive(const Primitive& primitive, glm::dvec3 origin, MaterialFa
     }
 }
 
+bool is_body(const formats::Material& material) {
+    return material.medium && !material.sheet;
+}
+
+void find_things_inside(const Scene& scene, SceneFacts& facts) {
+    for (std::uint32_t m = 0; m < facts.material.size(); ++m) {
+        MaterialFacts& own = facts.material[m];
+        for (std::uint32_t o = 0; o < facts.material.size() && is_body(scene.materials[m]); ++o) {
+            const MaterialFacts& other = facts.material[o];
+            own.may_hold_things =
+                own.may_hold_things ||
+                (!is_body(scene.materials[o]) && glm::all(glm::lessThan(own.low, other.high)) &&
+                 glm::all(glm::lessThan(other.low, own.high)));
+        }
+    }
+}
+
 double find_elevation(const Scene& scene, const HorizonTree& tree, std::uint32_t material,
                       Searches& searches) {
     HorizonSearch search = searches.start();
@@ -292,6 +309,7 @@ SceneFacts inspect_scene(const Scene& scene, formats::Slots slots) {
     }
     inspect_surroundings(scene, facts);
     find_nested_media(scene, facts);
+    find_things_inside(scene, facts);
     constexpr float kRoundings = 4 * 0x1p-23f;
     Searches searches{
         static_cast<double>(kRoundings * std::max({largest.x, largest.y, largest.z}))};

@@ -82,6 +82,8 @@ struct MaterialFacts {
     bool is_buried = false;          ///< a medium all of whose surface lies inside others
     bool overlaps = false;           ///< a medium whose bodies reach into others of it or touch
 
+    bool may_hold_things = false;  ///< a medium whose box overlaps that of surfaces of no medium
+
     bool is_grey = false;  ///< a medium or sheet whose numbers, and those of media inside it, are
                            ///< the same in all three bands, everywhere
     bool mirrors = false;  ///< a medium with a boundary: eta is not 1

@@ -127,7 +127,8 @@ PlanEntry decide_interreflection(const PlanInput& input) {
     // Light enters a medium anywhere on its facets, not only at vertices.
     const double above =
         horizon.elevation * horizon.elevation + (input.material.medium ? horizon.behind_facets : 0);
-    const double covered = input.material.sheet ? 1 : std::min(1.0, above);
+    const double covered =
+        input.material.sheet || input.subject.may_hold_things ? 1 : std::min(1.0, above);
     const formats::Rgb c = input.material.base_color;
     const double sent =
         formats::is_metal(input.material)

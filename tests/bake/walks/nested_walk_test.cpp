@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "bake/effects/multiple/walks/walk_boundary.h"
 #include "bake/physics/fresnel.h"
 #include "tests/bake/reference/reference_support.h"
 #include "tests/bake/walks/nested_bodies.h"
@@ -263,6 +265,40 @@ TEST(NestedWalk, FortyBodiesInEachOtherAreFollowedWhereTheirMediaAlternateFewTim
     EXPECT_GT(striped.counts.buried, 0u);
     EXPECT_LT(striped.all, 1);
     EXPECT_NEAR(striped.all * striped.counts.correction(), 1, 0.05);
+}
+
+// The floor of a body, met from above and from below.
+TEST(NestedWalk, ThingsInsideReflectTheirColourFromTheSideThatIsSeen) {
+    Primitive floor = make_quad({-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    floor.material = 1;
+    Scene scene = make_translucent_scene({make_sphere(3, 3), floor}, make_grey_medium(1, 0, 1.3f));
+    formats::Material& thing = scene.materials[1];
+    thing.base_color = {0.9f, 0.6f, 0.3f};
+    const auto reflect = [&](bool grey, float toward, float u) {
+        const auto body = make_walked_scene(scene, grey);
+        bake::WalkHit hit;
+        const glm::vec3 from(0.1f, -toward, 0.2f), along(0, toward, 0);
+        EXPECT_TRUE(bake::find_hit(body->space, from, along, 5, hit));
+        return bake::reflect_at(body->space, hit, along, u);
+    };
+    const auto seen = reflect(false, -1, 0.5f);
+    ASSERT_TRUE(seen);
+    EXPECT_EQ(seen->normal, kUp);
+    EXPECT_EQ(seen->albedo, (std::array{0.9f, 0.6f, 0.3f}));
+    EXPECT_FALSE(reflect(false, 1, 0.5f)) << "black from behind";
+    const auto grey = reflect(true, -1, 0.5f);
+    ASSERT_TRUE(grey);
+    EXPECT_NEAR(grey->albedo[2], 0.6f, 1e-6f);
+    thing.double_sided = true;
+    EXPECT_EQ(reflect(false, 1, 0.5f)->normal, -kUp);
+    // Of a leaf that reflects .2 and transmits .6 each way stands for all light that leaves it.
+    thing.base_color = {1, 1, 1};
+    thing.sheet = formats::Sheet{{0.2f, 0.2f, 0.2f}, {0.6f, 0.6f, 0.6f}};
+    const auto back = reflect(false, -1, 0.2f), through = reflect(false, -1, 0.3f);
+    EXPECT_EQ(back->normal, kUp);
+    EXPECT_EQ(through->normal, -kUp);
+    EXPECT_NEAR(back->albedo[0], 0.8f, 1e-6f);
+    EXPECT_NEAR(through->albedo[0], 0.8f, 1e-6f);
 }
 
 }  // namespace

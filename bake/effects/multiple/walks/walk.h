@@ -122,9 +122,9 @@ struct WalkOrders {
 ///     T_0 = E[sum of weight V L],    L_o = F_t <T_0, L>,
 /// without energy added or lost: albedo 1 gives 1, less what never scatters. E is over the walks of
 /// all groups of bands together (band_weights.h). The walk passes through inner shells of its own
-/// medium, and into the space's other media and out again (README.md, "Media inside"); where it
-/// meets another material it ends, because such light has met a second surface. At every arrival at
-/// the boundary of any of these bodies to the outside the transmitted part is an exit and the
+/// medium, and into the space's other media and out again (README.md, "Media inside"). Where it
+/// meets a surface of no medium it is reflected if it has scattered (reflect_at), and ends if not:
+/// that light is seen straight. At every arrival at the boundary of any of these bodies to the outside the transmitted part is an exit and the
 /// reflected part goes on. `exits` are appended. Returns the direction inside, away from the body,
 /// in which the walk is seen.
 glm::vec3 follow_walk(const WalkSpace& space, const WalkGroup& group, const WalkStart& start,

@@ -10,8 +10,9 @@ namespace opaline::bake {
 /// one of these ways.
 struct WalkEnds {
     std::array<double, 3> left{};      ///< the body, through its boundary, whether it counts or not
-    std::array<double, 3> met{};       ///< the surface of another material
-    std::array<double, 3> absorbed{};  ///< by the media
+    /// The surface of another material, unscattered or where it is black.
+    std::array<double, 3> met{};
+    std::array<double, 3> absorbed{};  ///< by the media, and by things that reflected the rest
     std::array<double, 3> unfinished{};  ///< what lost, endless and buried walks still had
 
     double finished(std::size_t band) const { return left[band] + met[band] + absorbed[band]; }
