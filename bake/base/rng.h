@@ -34,7 +34,8 @@ enum class RandomStage : std::uint32_t {
     true_gather = 24,
     reference_group = 25,
     volume_glow = 26,
-    refine_probes = 27
+    refine_probes = 27,
+    particle_flights = 28
 };
 
 /// Four random words, a pure function of the arguments. There is no state, so results do not depend

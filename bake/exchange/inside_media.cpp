@@ -5,77 +5,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
+#include "bake/physics/medium_flight.h"
 #include "bake/receivers/receiver.h"
 #include "bake/trace/cross_bodies.h"
 #include "bake/trace/packet_lane.h"
-#include "formats/media/mean_cosine.h"
 
 namespace opaline::bake {
-namespace {
-
-using Bands = std::array<float, 3>;
-
-Bands bands_of(const formats::Rgb& c) {
-    return {c.r, c.g, c.b};
-}
-
-Bands isotropic_scattering(const formats::Medium& medium) {
-    return bands_of(static_cast<float>(1 - formats::mean_cosine(medium.phase)) * medium.sigma_s);
-}
-
-struct Flight {
-    std::optional<float> length{};  // [m] to a scattering; none: to the boundary
-    Bands share{};
-};
-
-// One band is drawn in proportion to the light that the ray carries, and the balance heuristic over
-// all of them weighs it, so that no flight makes the sum over bands larger.
-Flight draw_flight(const formats::Medium& medium, const Bands& share, float distance, float u,
-                   float v) {
-    const Bands sigma_s = isotropic_scattering(medium), sigma_a = bands_of(medium.sigma_a);
-    Bands sigma_t{};
-    for (std::size_t b = 0; b < 3; ++b) {
-        sigma_t[b] = sigma_s[b] + sigma_a[b];
-    }
-    const float sum = share[0] + share[1] + share[2];
-    if (!(std::max({sigma_s[0], sigma_s[1], sigma_s[2]}) > 0) || !(sum > 0)) {
-        Flight crossing{{}, share};
-        for (std::size_t b = 0; b < 3; ++b) {
-            crossing.share[b] *= std::exp(-sigma_a[b] * distance);
-        }
-        return crossing;
-    }
-    const std::size_t drawn = u * sum < share[0] ? 0 : u * sum < share[0] + share[1] ? 1 : 2;
-    const float length = sigma_t[drawn] > 0 ? -std::log1p(-v) / sigma_t[drawn] : distance;
-    const bool scatters = length < distance;
-    const float way = scatters ? length : distance;
-    // Relative to the band that was drawn, so that no density underflows in all of them.
-    Bands light{};
-    float density = 0;
-    for (std::size_t b = 0; b < 3; ++b) {
-        const float passed = std::exp(std::min((sigma_t[drawn] - sigma_t[b]) * way, 80.0f));
-        light[b] = scatters ? sigma_s[b] * passed : passed;
-        density += share[b] / sum * (scatters ? sigma_t[b] * passed : passed);
-    }
-    Flight flight{scatters ? std::optional(length) : std::nullopt, {}};
-    for (std::size_t b = 0; b < 3; ++b) {
-        flight.share[b] = density > 0 ? share[b] * light[b] / density : 0;
-    }
-    return flight;
-}
-
-glm::vec3 to_sphere(float u, float v) {
-    const float z = 1 - 2 * u, r = std::sqrt(std::max(0.0f, 1 - z * z));
-    const float azimuth = 2 * std::numbers::pi_v<float> * v;
-    return {r * std::cos(azimuth), r * std::sin(azimuth), z};
-}
-
-}  // namespace
-
 bool is_inside(const BounceSpace& space, std::uint32_t material, const SeenSide& side) {
     const formats::Material& of = space.scene.materials[material];
     return !side.is_seen && side.behind && side.normal != glm::vec3(0) && of.medium && !of.sheet &&
@@ -111,7 +49,8 @@ MediumAround medium_around(const BounceSpace& space, const Receiver& at) {
         nearest = std::min(nearest, hits.distance[i]);
     }
     if (around.material != formats::kNone) {
-        const Bands sigma_s = isotropic_scattering(*space.scene.materials[around.material].medium);
+        const std::array<float, 3> sigma_s =
+            isotropic_scattering(*space.scene.materials[around.material].medium);
         around.is_deep = nearest * std::ranges::min(sigma_s) > kDeep;
     }
     return around;
@@ -126,14 +65,14 @@ bool go_on_inside(const BounceSpace& space, const RayEnd& end, MirroredRay& ray,
     const std::uint64_t key = key_of({end.position, end.direction});
     const auto of_flight = random_uniform(seed, RandomStage::bounce_rays, key, 0);
     const auto of_turn = random_uniform(seed, RandomStage::bounce_rays, key, 1);
-    const Flight flight =
-        draw_flight(medium, bands_of(ray.share), end.distance, of_flight[0], of_flight[1]);
+    const MediumFlight flight = draw_flight(medium, {ray.share.r, ray.share.g, ray.share.b},
+                                            end.distance, of_flight[0], of_flight[1]);
     ray.share = {flight.share[0], flight.share[1], flight.share[2]};
     ray.medium = around;
     ++ray.inside;
     if (flight.length) {
         ray.origin += *flight.length * ray.direction;
-        ray.direction = to_sphere(of_turn[0], of_turn[1]);
+        ray.direction = direction_on_sphere(of_turn[0], of_turn[1]);
         return true;
     }
     if (!is_boundary) return false;

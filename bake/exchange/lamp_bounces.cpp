@@ -21,6 +21,7 @@ constexpr std::uint32_t kColourBands = 3;
 // Irradiance of all scatterers by one lamp, on their side and beyond it.
 struct LampIrradiance {
     std::vector<glm::dvec3> front, beyond;
+    std::vector<glm::dvec3> leaving{};  // exitance, of media around the lamp; empty: none
 };
 
 glm::dvec3 colour_of(const BandColour& c) {
@@ -146,6 +147,10 @@ CodedRows light_at_once(const LampLight& lamps, const Transfer& transfer, const 
             set_row(emitted, i, glm::vec3(mirrored * lit.front[i]));
         }
         add_answer(answer, transfer.scatterers, irradiance, kColourBands, context, emitted);
+        for (const std::uint32_t i : answer.members) {
+            if (lit.leaving.empty()) continue;
+            set_row(emitted, i, glm::vec3(row_of(emitted, i) + lit.leaving[i]));
+        }
     }
     return emitted;
 }
@@ -206,6 +211,10 @@ LampBounces find_lamp_bounces(const LampLight& lamps, const BounceLight* surface
         }
         add_caustic(arrived[e].caustic.front, lit[e].front);
         add_caustic(arrived[e].caustic.beyond, lit[e].beyond);
+        if (!arrived[e].leaving.empty()) {
+            lit[e].leaving.resize(lit[e].front.size());
+            add_caustic(arrived[e].leaving.front, lit[e].leaving);
+        }
     }
     add_light_of_volumes(lamps, *surfaces, context, lit, rays);
     BounceTree tree(surfaces->transfer.scatterers, lamps.scene.materials.size(), kColourBands);

@@ -30,6 +30,7 @@ struct LampBounces {
 /// itself, and as metals and media passed it on. Empty: nothing, or nobody asked.
 struct ArrivedParticles {
     ParticleCells straight, caustic;
+    ParticleCells leaving;  ///< what leaves the medium around the lamp there
 };
 
 /// Solves for the light that surfaces send out of what arrives at first: at points of scatterers

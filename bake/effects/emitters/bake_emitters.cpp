@@ -52,18 +52,52 @@ void subtract(std::span<const ElementDeposit> part, std::span<ElementDeposit> al
     }
 }
 
+// In deep media each is followed for long: fewer, by the flights of some of them. 0 where these
+// hardly come out.
+std::uint32_t particles_inside(const EmitterJob& job, const LampSources& lamp,
+                               const ElementLayout& layout, ParticleRun run,
+                               const Context& context) {
+    constexpr double kFlights = 4e6, kLeast = 2000;
+    constexpr std::uint32_t kSome = 256;
+    run.particles = kSome;
+    std::uint64_t rays = 0;
+    trace_particles(job.scene, job.rays, lamp, layout, run, context, rays);
+    const double flights = static_cast<double>(rays) / kSome;
+    if (!(flights < kMostFlightsInside / 4.0)) return 0;
+    const double fitting = kFlights / std::max(1.0, flights);
+    return static_cast<std::uint32_t>(
+        std::clamp(fitting, kLeast, std::max(kLeast, job.knobs[kEmitterParticles])));
+}
+
 /// What particles bring to surfaces before it is scattered.
 struct TracedLamps {
     std::optional<ElementLayout> layout;  // of caustics, where there are any
     std::vector<ElementLight> caustics;   // of each lamp, as receivers read them
     std::vector<ArrivedParticles> arrived;
+    std::optional<ElementLayout> coarse;  // of what leaves media around lamps
+    std::vector<ElementLight> leaving;    // of each lamp
+    std::vector<std::uint32_t> immersed;  // lamps whose light stays in the medium around them
 };
 
+// Groups of elements have so many particles of what leaves a medium, or more.
+constexpr JoinRule kLeavingElements{1, 256};
+
+// Whether particles are followed in it: not where walks join several media, nor where it varies.
+bool is_followed(const EmitterJob& job, std::uint32_t material) {
+    if (material == formats::kNone) return false;
+    const formats::Medium& medium = *job.scene.materials[material].medium;
+    return !medium.variation && !(medium.thickness > 0) && !job.media.layouts.empty() &&
+           !job.media.layouts[material].layered;
+}
+
 TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sources,
-                        const DensitySpace* volumes, const Context& context, std::uint64_t& rays) {
+                        std::span<const std::uint32_t> around, const DensitySpace* volumes,
+                        const Context& context, std::uint64_t& rays) {
     const std::uint32_t particles = whole(job.knobs, kEmitterParticles);
     const std::uint32_t more = caustic_particles(particles);
-    const ElementLayout coarse(job.scene, finest_area(job.scene, particles));
+    TracedLamps traced;
+    const ElementLayout& coarse =
+        traced.coarse.emplace(job.scene, finest_area(job.scene, particles));
     const auto make_cells = [&](const ElementLayout& layout) {
         const std::size_t count =
             job.surfaces != nullptr ? job.surfaces->transfer.scatterers.size() : 0;
@@ -73,13 +107,24 @@ TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sour
     };
     const std::optional<CellsOfElements> cells = make_cells(coarse);
     std::optional<CellsOfElements> caustic_cells;
-    TracedLamps traced;
     traced.caustics.resize(sources.size());
+    traced.leaving.resize(sources.size());
     traced.arrived.resize(sources.size());
     for (std::uint32_t e = 0; e < sources.size() && !context.cancelled(); ++e) {
         ParticleRun run{particles, e, job.knobs.seed, 0, job.textures};
         run.volumes = volumes;
         run.ends_diffuse = true;
+        if (is_followed(job, around[e])) {
+            run.medium = around[e];
+            run.particles = particles_inside(job, sources[e], coarse, run, context);
+            if (run.particles == 0) {
+                run.medium = formats::kNone;
+                run.particles = particles;
+            }
+        }
+        if (around[e] != formats::kNone && run.medium == formats::kNone) {
+            traced.immersed.push_back(e);
+        }
         ParticleLight first =
             trace_particles(job.scene, job.rays, sources[e], coarse, run, context, rays);
         const bool has_caustic = has_light(first.caustic), has_more = is_bright(first);
@@ -87,12 +132,16 @@ TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sour
         if (cells && job.lamps[e].volume == formats::kNone) {
             traced.arrived[e].straight = cells->sum(first.all);
         }
+        if (has_light(first.leaving)) {
+            traced.leaving[e] = coarse.join(first.leaving, kLeavingElements);
+            if (cells) traced.arrived[e].leaving = cells->sum(first.leaving);
+        }
         if (!has_caustic) continue;
         if (!traced.layout) {
             traced.layout.emplace(job.scene, finest_area(job.scene, more));
             caustic_cells = make_cells(*traced.layout);
         }
-        run.particles = has_more ? more : particles;
+        if (has_more && run.medium == formats::kNone) run.particles = more;
         const std::vector<ElementDeposit> caustic =
             trace_particles(job.scene, job.rays, sources[e], *traced.layout, run, context, rays)
                 .caustic;
@@ -142,8 +191,12 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     if (!job.scene.volumes.empty()) space = make_density_space(job.scene);
     const DensitySpace* const volumes = space ? &*space : nullptr;
     const auto glow = make_glow_lights(job, context.threads);
+    std::vector<std::uint32_t> around;
+    for (const LampSources& lamp : sources) {
+        around.push_back(medium_around(job.scene, job.rays, lamp));
+    }
     const TracedLamps traced = run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
-        return trace_lamps(job, sources, volumes, context, rays);
+        return trace_lamps(job, sources, around, volumes, context, rays);
     });
     const LampLight lamps{job.scene,
                           job.rays,
@@ -154,6 +207,8 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
                           traced.layout ? &*traced.layout : nullptr,
                           volumes,
                           glow,
+                          traced.leaving,
+                          &*traced.coarse,
                           job.textures};
     const LampBounces light = run_stage(log, "surfaces lit by emitters", [&](std::uint64_t& rays) {
         return find_lamp_bounces(lamps, job.surfaces, traced.arrived, context, rays);
@@ -168,6 +223,8 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
                 if (job.primitives[p].shading != formats::Shading::translucent) continue;
                 add_crossing_light(*job.media.finished, job.receivers[p], light, rows[p], context,
                                    rays);
+                add_leaving_light(lamps, job.receivers[p],
+                                  job.media.layouts[job.receivers[p].material], rows[p], rays);
             }
             return rows;
         });
@@ -206,10 +263,8 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
                               job.knobs.seed, context, rays);
     });
     if (context.cancelled()) return interrupted();
-    for (std::size_t e = 0; e < sources.size(); ++e) {
-        if (is_immersed(job.scene, job.rays, sources[e])) {
-            baked.immersed.push_back(job.lamps[e].name);
-        }
+    for (const std::uint32_t e : traced.immersed) {
+        baked.immersed.push_back(job.lamps[e].name);
     }
     return baked;
 }

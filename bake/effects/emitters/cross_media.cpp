@@ -1,7 +1,11 @@
 #include "bake/effects/emitters/cross_media.h"
 
+#include <algorithm>
+#include <numbers>
+
 #include "bake/effects/emitters/lit_media.h"
 #include "bake/exchange/other_light.h"
+#include "bake/physics/fresnel.h"
 #include "formats/opal/cubemap.h"
 
 namespace opaline::bake {
@@ -27,6 +31,26 @@ void add_crossing_light(const FinishedMedia& media, const ReceiverSet& set,
                 formats::Rgb& to = rows[e][v * terms + k];
                 to = to + formats::Rgb{band(0), band(1), band(2)};
             }
+        }
+    }
+}
+
+void add_leaving_light(const LampLight& lamps, const ReceiverSet& set, const RowLayout& layout,
+                       std::vector<std::vector<formats::Rgb>>& rows, std::uint64_t& rays) {
+    if (std::ranges::all_of(lamps.leaving, &ElementLight::empty)) return;
+    const std::size_t terms = layout.terms();
+    if (rows.empty()) {
+        rows.assign(lamps.sources.size(), std::vector<formats::Rgb>(set.size() * terms));
+    }
+    const double eta{lamps.scene.materials[set.material].medium->eta};
+    const double scale =
+        std::numbers::inv_pi / (1 - fresnel_moments(eta).external) / layout.view_of_constant();
+    for (std::size_t v = 0; v < set.size(); ++v) {
+        const std::vector<glm::dvec3> leaving = leaving_exitance(lamps, set.outside[v], rays);
+        for (std::size_t e = 0; e < leaving.size(); ++e) {
+            const glm::vec3 own(scale * leaving[e]);
+            formats::Rgb& to = rows[e][v * terms];
+            to = to + formats::Rgb{own.x, own.y, own.z};
         }
     }
 }

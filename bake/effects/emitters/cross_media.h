@@ -19,4 +19,10 @@ void add_crossing_light(const FinishedMedia& media, const ReceiverSet& set,
                         const LampBounces& light, std::vector<std::vector<formats::Rgb>>& rows,
                         const Context& context, std::uint64_t& rays);
 
+/// Adds what leaves the medium around a lamp after it has scattered, as radiance that is the same
+/// for all views but for what the boundary lets through: M / (pi (1 - F_ext)) for the exitance M.
+/// `layout`: of the receivers' material; `rows` may be empty.
+void add_leaving_light(const LampLight& lamps, const ReceiverSet& set, const RowLayout& layout,
+                       std::vector<std::vector<formats::Rgb>>& rows, std::uint64_t& rays);
+
 }  // namespace opaline::bake

@@ -1,6 +1,7 @@
 #include "bake/effects/emitters/immersed_lamps.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 #include "bake/trace/packet_lane.h"
@@ -18,12 +19,13 @@ glm::vec3 spiral_direction(std::size_t i, std::size_t count) {
     return {radius * std::cos(turn), radius * std::sin(turn), z};
 }
 
-// `normal`: rays start on that side of it alone; 0: on all sides.
-bool is_inside_medium(const formats::Scene& scene, const RayScene& rays, const glm::vec3& from,
-                      const glm::vec3& normal) {
+// The medium around a point. `normal`: rays start on that side of it alone; 0: on all sides.
+std::uint32_t medium_at(const formats::Scene& scene, const RayScene& rays, const glm::vec3& from,
+                        const glm::vec3& normal) {
     RayPacket packet = rays_from(from);
     LaneMask lanes{};
-    std::size_t started = 0, backs = 0;
+    std::size_t started = 0;
+    std::map<std::uint32_t, std::size_t> backs;  // by material
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         const glm::vec3 direction = spiral_direction(i, RayPacket::kSize);
         set_lane(packet, lanes, i, direction);
@@ -34,21 +36,26 @@ bool is_inside_medium(const formats::Scene& scene, const RayScene& rays, const g
     for (std::size_t i = 0; i < RayPacket::kSize; ++i) {
         if (lanes[i] == 0 || hits.hit[i] == 0 || !(hits.cosine[i] > 0)) continue;
         const auto& medium = scene.materials[hits.material[i]].medium;
-        backs += medium && medium->sigma_s != formats::Rgb{} ? 1 : 0;
+        if (medium && medium->sigma_s != formats::Rgb{}) ++backs[hits.material[i]];
     }
-    return 2 * backs > started;
+    for (const auto& [material, count] : backs) {
+        if (2 * count > started) return material;
+    }
+    return formats::kNone;
 }
 
 }  // namespace
 
-bool is_immersed(const formats::Scene& scene, const RayScene& rays, const LampSources& lamp) {
-    if (rays.is_empty()) return false;
-    double inside = 0, all = 0;
+std::uint32_t medium_around(const formats::Scene& scene, const RayScene& rays,
+                            const LampSources& lamp) {
+    if (rays.is_empty()) return formats::kNone;
+    double all = 0;
+    std::map<std::uint32_t, double> inside;  // by material
     const auto count = [&](const glm::dvec3& from, const glm::dvec3& normal,
                            const glm::dvec3& power) {
         const double weight = power.x + power.y + power.z;
         all += weight;
-        inside += is_inside_medium(scene, rays, glm::vec3(from), glm::vec3(normal)) ? weight : 0;
+        inside[medium_at(scene, rays, glm::vec3(from), glm::vec3(normal))] += weight;
     };
     const std::size_t step = 1 + lamp.triangles.size() / kMostPlaces;
     for (std::size_t t = 0; t < lamp.triangles.size(); t += step) {
@@ -62,7 +69,10 @@ bool is_immersed(const formats::Scene& scene, const RayScene& rays, const LampSo
         if (light.type == formats::Light::Type::directional) continue;
         count(glm::dvec3(light.position), glm::dvec3(0), light_power(lamp, light));
     }
-    return all > 0 && 2 * inside > all;
+    for (const auto& [material, power] : inside) {
+        if (2 * power > all) return material;
+    }
+    return formats::kNone;
 }
 
 }  // namespace opaline::bake

@@ -15,6 +15,40 @@ namespace {
 constexpr double kNear = 0.01;  // of the scene: a receiver's surface is not farther
 constexpr std::uint32_t kLeastGlowRays = 16;
 
+// Adds the mean of each lamp's elements around a receiver: four rays down to them, at a vertex to
+// some of those that meet there.
+void add_elements(const LampLight& light, const ElementLayout& layout,
+                  std::span<const ElementLight> of_lamps, const Receiver& receiver,
+                  std::span<glm::dvec3> total, std::uint64_t& rays) {
+    if (std::ranges::all_of(of_lamps, &ElementLight::empty)) return;
+    constexpr std::uint32_t kRays = 4;
+    RayPacket packet = rays_from(receiver.origin);
+    LaneMask lanes{};
+    const Frame frame = make_frame(receiver.normal);
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const glm::vec3 across(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, -1);
+        set_lane(packet, lanes, i, glm::normalize(frame.to_world(across)),
+                 static_cast<float>(kNear * light.sources.front().radius));
+    }
+    rays += kRays;
+    const PacketHits hits = light.rays.closest(lanes, packet);
+    std::array<std::size_t, kRays> elements{};
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const auto at = arrival_of(hits, i);
+        if (!at || glm::dot(at->normal, glm::dvec3(receiver.normal)) < 0.5) continue;
+        const std::size_t element = layout.element(at->side, at->weights);
+        if (element < layout.size()) elements[count++] = element;
+    }
+    for (std::size_t lamp = 0; lamp < of_lamps.size(); ++lamp) {
+        if (of_lamps[lamp].empty()) continue;
+        for (std::size_t i = 0; i < count; ++i) {
+            total[lamp] +=
+                glm::dvec3(of_lamps[lamp].irradiance[elements[i]]) / static_cast<double>(count);
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<glm::dvec3> receive_straight(const LampLight& light, const Receiver& receiver,
@@ -44,36 +78,18 @@ void add_from_volumes(const LampLight& light, const Receiver& receiver, std::uin
 
 void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
                   std::uint64_t& rays) {
-    if (std::ranges::all_of(light.caustics, &ElementLight::empty)) return;
-    const ElementLayout& layout = *light.layout;
-    // Four rays down to the elements around the receiver: at a vertex some of those that meet
-    // there.
-    constexpr std::uint32_t kRays = 4;
-    RayPacket packet = rays_from(receiver.origin);
-    LaneMask lanes{};
-    const Frame frame = make_frame(receiver.normal);
-    for (std::uint32_t i = 0; i < kRays; ++i) {
-        const glm::vec3 across(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, -1);
-        set_lane(packet, lanes, i, glm::normalize(frame.to_world(across)),
-                 static_cast<float>(kNear * light.sources.front().radius));
+    if (light.layout != nullptr) {
+        add_elements(light, *light.layout, light.caustics, receiver, total, rays);
     }
-    rays += kRays;
-    const PacketHits hits = light.rays.closest(lanes, packet);
-    std::array<std::size_t, kRays> elements{};
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < kRays; ++i) {
-        const auto at = arrival_of(hits, i);
-        if (!at || glm::dot(at->normal, glm::dvec3(receiver.normal)) < 0.5) continue;
-        const std::size_t element = layout.element(at->side, at->weights);
-        if (element < layout.size()) elements[count++] = element;
+}
+
+std::vector<glm::dvec3> leaving_exitance(const LampLight& light, const Receiver& receiver,
+                                         std::uint64_t& rays) {
+    std::vector<glm::dvec3> total(light.sources.size(), glm::dvec3(0));
+    if (light.leaving_layout != nullptr && receiver.normal != glm::vec3(0)) {
+        add_elements(light, *light.leaving_layout, light.leaving, receiver, total, rays);
     }
-    for (std::size_t lamp = 0; lamp < light.caustics.size(); ++lamp) {
-        if (light.caustics[lamp].empty()) continue;
-        for (std::size_t i = 0; i < count; ++i) {
-            total[lamp] += glm::dvec3(light.caustics[lamp].irradiance[elements[i]]) /
-                           static_cast<double>(count);
-        }
-    }
+    return total;
 }
 
 }  // namespace opaline::bake

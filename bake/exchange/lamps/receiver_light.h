@@ -34,6 +34,10 @@ struct LampLight {
     /// Of each lamp, its light from volumes: what one sends out, or all scatter. An empty span:
     /// of no lamp.
     std::span<const std::optional<GlowLight>> glow = {};
+    /// Of each lamp, what leaves the medium around it [lm/m^2], by elements of its outside; an
+    /// empty one, or none: nothing. Their elements.
+    std::span<const ElementLight> leaving = {};
+    const ElementLayout* leaving_layout = nullptr;
     const ScenePyramids* textures = nullptr;  ///< filtered where views see them; null: at points
 };
 
@@ -50,5 +54,10 @@ void add_from_volumes(const LampLight& light, const Receiver& receiver, std::uin
 /// it.
 void add_caustics(const LampLight& light, const Receiver& receiver, std::span<glm::dvec3> total,
                   std::uint64_t& rays);
+
+/// What leaves the medium of each lamp that is inside of one, at a receiver of its outside
+/// [lm/m^2]: the mean over the elements around it.
+std::vector<glm::dvec3> leaving_exitance(const LampLight& light, const Receiver& receiver,
+                                         std::uint64_t& rays);
 
 }  // namespace opaline::bake

@@ -11,6 +11,7 @@
 #include "bake/exchange/lamps/glow_light.h"
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/lamps/particle_start.h"
+#include "bake/physics/medium_flight.h"
 #include "bake/physics/path_differentials/path_differential.h"
 #include "bake/scene/texture_pyramid.h"
 
@@ -26,7 +27,7 @@ struct Deposit {
     std::size_t element;
     glm::dvec3 power;
     double footprint;  // [m^2]
-    bool is_caustic;
+    enum Kind { first, caustic, leaving } kind;
 };
 
 struct Traced {
@@ -109,42 +110,88 @@ Choice cross(const Tracer& tracer, const Arrival& at, const std::array<float, 4>
                   : Choice{};
 }
 
+// Scatters the particle before it reaches the surface, or attenuates it to there. False: the
+// latter.
+bool scatter_inside(const Tracer& tracer, const Arrival& at, std::uint64_t key,
+                    std::uint32_t flight, Particle& p) {
+    const formats::Medium& medium = *tracer.scene.materials[tracer.run.medium].medium;
+    const auto x = random_uniform(tracer.run.seed, RandomStage::particle_flights, key, flight);
+    const double scale = largest_band(p.power);
+    const glm::vec3 share(p.power / scale);
+    const MediumFlight drawn = draw_flight(medium, {share.x, share.y, share.z},
+                                           static_cast<float>(at.distance), x[0], x[1]);
+    p.power = scale * glm::dvec3(drawn.share[0], drawn.share[1], drawn.share[2]);
+    if (!drawn.length) return false;
+    p.position += double{*drawn.length} * p.direction;
+    p.direction = glm::dvec3(direction_on_sphere(x[2], x[3]));
+    return true;
+}
+
 void trace_particle(const Tracer& tracer, std::uint64_t particle, Traced& out) {
     Particle p = start_particle(tracer.starts, tracer.rules, tracer.run, particle);
+    const std::uint64_t key = particle_key(tracer.run, particle);
     const double least = kLeastShare * largest_band(p.power);
     bool is_from_lamp = true;  // by metals and media alone
-    for (std::uint32_t flight = 0; flight < kMostFlights; ++flight) {
+    bool is_inside = tracer.run.medium != formats::kNone, is_scattered = false;
+    const std::uint32_t most = is_inside ? kMostFlightsInside : kMostFlights;
+    for (std::uint32_t flight = 0; flight < most; ++flight) {
         ++out.rays;
         const auto at =
             find_arrival(tracer.surfaces, glm::vec3(p.position), glm::vec3(p.direction));
         if (!at) return;
-        move_to_surface(p.path, p.direction, at->normal, at->distance);
         if (flight == 0) p.power *= p.dimming(at->distance);
-        p.power *= straight_transmittance(tracer.scene, *at) *
-                   volume_transmittance(tracer.run.volumes, p.position, p.direction, at->distance);
+        if (is_inside && scatter_inside(tracer, *at, key, flight, p)) {
+            if (!(largest_band(p.power) > least)) return;
+            is_scattered = true;
+            continue;
+        }
+        move_to_surface(p.path, p.direction, at->normal, at->distance);
+        if (!is_inside) {
+            p.power *=
+                straight_transmittance(tracer.scene, *at) *
+                volume_transmittance(tracer.run.volumes, p.position, p.direction, at->distance);
+        }
         if (!(largest_band(p.power) > least)) return;
         const double footprint =
             tracer.run.fixed_area > 0
                 ? tracer.run.fixed_area
                 : surface_footprint(p.path, tracer.rules, at->normal, FootprintMode::polygon).area;
-        const std::size_t element = tracer.layout.element(at->side, at->weights);
-        const bool is_caustic = is_from_lamp && flight > 0;
-        if (element < tracer.layout.size()) {
-            out.deposits.push_back(
-                {element, p.power, std::max(footprint, kLeastFootprint), is_caustic});
+        const auto deposit = [&](const TriangleSide& side, Deposit::Kind kind) {
+            const std::size_t element = tracer.layout.element(side, at->weights);
+            if (element < tracer.layout.size()) {
+                out.deposits.push_back(
+                    {element, p.power, std::max(footprint, kLeastFootprint), kind});
+            }
+        };
+        // What surfaces inside reflect again, the exchange has.
+        if (!is_inside || is_from_lamp) {
+            deposit(at->side, is_from_lamp && flight > 0 ? Deposit::caustic : Deposit::first);
         }
-        auto x = random_uniform(tracer.run.seed, RandomStage::particle_bounces,
-                                particle_key(tracer.run, particle), flight);
+        auto x = random_uniform(tracer.run.seed, RandomStage::particle_bounces, key, flight);
         if (flight == 0) std::ranges::copy(p.first_bounce, x.begin());
         const bool is_medium = lets_through(tracer.scene, *at);
-        if (is_medium && at->side.is_back && flight == 0 && !is_clear(tracer.scene, *at)) return;
+        if (is_inside && is_medium && at->material != tracer.run.medium) return;
+        if (is_medium && at->side.is_back && flight == 0 && !is_inside &&
+            !is_clear(tracer.scene, *at)) {
+            return;
+        }
         const Choice next = is_medium ? cross(tracer, *at, x, p) : scatter(tracer, *at, x, p);
         if (next.power == glm::dvec3(0)) return;
+        if (is_inside && is_medium && next.crosses) {
+            if (is_scattered) {
+                p.power = next.power;
+                deposit({at->side.primitive, at->side.first_index, !at->side.is_back},
+                        Deposit::leaving);
+            }
+            if (is_scattered || !is_from_lamp) return;
+            is_inside = false;
+        }
         p.position = leave_surface(p.position, p.direction, *at, next.crosses);
         p.direction = next.direction;
         p.power = next.power;
         is_from_lamp = is_from_lamp && !next.is_diffuse;
-        if (tracer.run.ends_diffuse && !is_from_lamp) return;
+        is_scattered = is_scattered && !next.is_diffuse;
+        if (tracer.run.ends_diffuse && !is_from_lamp && !is_inside) return;
     }
 }
 
@@ -186,10 +233,11 @@ ParticleLight trace_particles(const formats::Scene& scene, const RayScene& rays_
         },
         [&](Range, Traced&& traced) {
             for (const Deposit& deposit : traced.deposits) {
-                add_deposit(deposit, light.all);
-                if (!deposit.is_caustic) continue;
-                light.caustic.resize(layout.size());
-                add_deposit(deposit, light.caustic);
+                if (deposit.kind != Deposit::leaving) add_deposit(deposit, light.all);
+                if (deposit.kind == Deposit::first) continue;
+                auto& part = deposit.kind == Deposit::leaving ? light.leaving : light.caustic;
+                part.resize(layout.size());
+                add_deposit(deposit, part);
             }
             rays += traced.rays;
         });

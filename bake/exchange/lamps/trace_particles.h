@@ -12,6 +12,9 @@
 
 namespace opaline::bake {
 
+/// Flights of a particle in the medium around its lamp; what is left of its light is lost.
+inline constexpr std::uint32_t kMostFlightsInside = 4096;
+
 struct ParticleRun {
     std::uint32_t particles = 0;  ///< at least 1
     std::uint32_t lamp = 0;       ///< keys the random numbers, with the seed
@@ -23,6 +26,8 @@ struct ParticleRun {
     bool ends_diffuse = false;              ///< particles end where they scatter diffusely
     double gradient_limit = 0.7;            ///< of footprints; infinite, for comparisons: none
     const DensitySpace* volumes = nullptr;  ///< that dim particles; null: none
+    /// Material of the scattering medium around the lamp, homogeneous; formats::kNone: none.
+    std::uint32_t medium = formats::kNone;
 };
 
 /// What a lamp's particles brought to elements.
@@ -30,6 +35,9 @@ struct ParticleLight {
     std::vector<ElementDeposit> all;
     /// What metals and media alone passed on from the lamp: a part of `all`. Empty: nothing.
     std::vector<ElementDeposit> caustic;
+    /// What leaves the medium around the lamp after it has scattered there, by elements of its
+    /// outside; no part of the others. Empty: nothing.
+    std::vector<ElementDeposit> leaving;
 };
 
 /// Light of a lamp at each element of a scene, by particles [Suykens2001].
@@ -37,9 +45,10 @@ struct ParticleLight {
 /// A particle of 1 / N of the lamp's power gives it, at each surface that it meets, to the element
 /// there, with its footprint: the polygon of global steps (N survival)^(-1/M), limited where its
 /// contribution varies. It goes on, reflected diffusely or mirrored by metal, with the probability
-/// of the larger band, or straight through a medium, attenuated; from a lamp inside of a medium it
-/// does not. The sum over elements is what arrived. The same bits for any number of threads.
-/// `rays` counts those traced.
+/// of the larger band, or straight through a medium, attenuated. In the medium around its lamp it
+/// scatters, until it leaves that by chance, as the boundary says: there it ends, or goes on if it
+/// has not scattered since a surface. The sum over elements is what arrived. The same bits for any
+/// number of threads. `rays` counts those traced.
 ParticleLight trace_particles(const formats::Scene& scene, const RayScene& rays_scene,
                               const LampSources& lamp, const ElementLayout& layout,
                               const ParticleRun& run, const Context& context, std::uint64_t& rays);
