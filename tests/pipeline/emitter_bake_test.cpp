@@ -8,6 +8,7 @@
 #include "bake/effects/multiple/multiple_knobs.h"
 #include "formats/opal/emitters.h"
 #include "tests/support/bake.h"
+#include "tests/support/media.h"
 
 namespace opaline::bake {
 namespace {
@@ -120,10 +121,39 @@ TEST(EmitterBake, MediaAreLitWhereTheirMultipleScatteringIsSimulated) {
     EXPECT_TRUE(has_warning(dark, "does not reach media whose multiple scattering is left out"));
 }
 
-TEST(EmitterBake, LampInsideOfAMediumIsNamed) {
+// Through thousands of mean free paths next to nothing comes out.
+TEST(EmitterBake, LampThatNoLightComesFromOutOfItsMediumIsNamed) {
     formats::Scene scene = lamp_and_wax();
     scene.lights[0].position = {0, 0.3f, 0};
+    scene.materials[2].medium->sigma_s = {1e5f, 1e5f, 1e5f};
+    scene.materials[2].medium->sigma_a = {0, 0, 0};
     EXPECT_TRUE(has_warning(bake_lamps(scene), "it lies inside of a translucent medium"));
+}
+
+// All power of a lamp in the middle of a ball that absorbs nothing leaves it, alike everywhere: of
+// I [cd] and the radius R its exitance is M = I / R^2. A small black thing at the distance d from
+// the middle has the irradiance M (R / d)^2 on the side that faces the ball.
+TEST(EmitterBake, LightOfALampInsideOfAMediumLeavesIt) {
+    formats::Scene scene =
+        tests::make_scene({tests::make_sphere(3),
+                           tests::make_quad({-0.1f, -2, 0.1f}, {0.2f, 0, 0}, {0, 0, -0.2f}, 1)});
+    scene.primitives[1].material = 1;
+    scene.materials[0].medium = tests::make_grey_medium(8, 0, 1.3f);
+    scene.materials.push_back({.name = "Thing"});
+    scene.materials[1].base_color = {0.05f, 0.05f, 0.05f};
+    scene.lights.push_back({.name = "Bulb", .intensity = {3, 2, 1}, .position = {0, 0, 0}});
+    const BakeResult baked = bake_lamps(scene);
+    const auto shown = show(baked, {{1, 1, 1}});
+    const std::size_t ball = scene.primitives[0].position.size();
+    Rgb mean{0, 0, 0};
+    for (std::size_t v = 0; v < ball; ++v) {
+        mean = mean + 1 / static_cast<float>(ball) * shown[v];
+    }
+    constexpr float kM = std::numbers::inv_pi_v<float>;  // by candela, as radiance
+    EXPECT_NEAR(mean.r, 3 * kM, 0.1f * 3 * kM);
+    EXPECT_NEAR(mean.g, 2 * kM, 0.1f * 2 * kM);
+    EXPECT_NEAR(mean.b, kM, 0.1f * kM);
+    EXPECT_NEAR(shown[ball].r, 0.05f * 3 * kM / 4, 0.1f * 0.05f * 3 * kM / 4);
 }
 
 }  // namespace

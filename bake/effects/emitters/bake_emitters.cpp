@@ -1,6 +1,7 @@
 #include "bake/effects/emitters/bake_emitters.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "bake/effects/emitters/lamp_rows.h"
 #include "bake/effects/emitters/lit_media.h"
 #include "bake/exchange/lamps/trace_particles.h"
+#include "bake/physics/medium_flight.h"
 #include "bake/scene/lobe_record.h"
 
 namespace opaline::bake {
@@ -52,6 +54,12 @@ void subtract(std::span<const ElementDeposit> part, std::span<ElementDeposit> al
     }
 }
 
+glm::dvec3 extinction_of(const formats::Medium& medium) {
+    const std::array<float, 3> s = isotropic_scattering(medium);
+    const formats::Rgb& a = medium.sigma_a;
+    return glm::dvec3(s[0], s[1], s[2]) + glm::dvec3(a.r, a.g, a.b);
+}
+
 // In deep media each is followed for long: fewer, by the flights of some of them. 0 where these
 // hardly come out.
 std::uint32_t particles_inside(const EmitterJob& job, const LampSources& lamp,
@@ -82,17 +90,18 @@ struct TracedLamps {
 // Groups of elements have so many particles of what leaves a medium, or more.
 constexpr JoinRule kLeavingElements{1, 256};
 
-// Whether particles are followed in it: not where walks join several media, nor where it varies.
+// Whether particles are followed in it: not where walks join several media, where it varies, or
+// where what scatters often is left out.
 bool is_followed(const EmitterJob& job, std::uint32_t material) {
     if (material == formats::kNone) return false;
     const formats::Medium& medium = *job.scene.materials[material].medium;
     return !medium.variation && !(medium.thickness > 0) && !job.media.layouts.empty() &&
-           !job.media.layouts[material].layered;
+           job.media.layouts[material].constant && !job.media.layouts[material].layered;
 }
 
-TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sources,
-                        std::span<const std::uint32_t> around, const DensitySpace* volumes,
-                        const Context& context, std::uint64_t& rays) {
+// `sources` get the extinction of media that particles are followed in.
+TracedLamps trace_lamps(const EmitterJob& job, std::span<LampSources> sources,
+                        const DensitySpace* volumes, const Context& context, std::uint64_t& rays) {
     const std::uint32_t particles = whole(job.knobs, kEmitterParticles);
     const std::uint32_t more = caustic_particles(particles);
     TracedLamps traced;
@@ -114,15 +123,18 @@ TracedLamps trace_lamps(const EmitterJob& job, std::span<const LampSources> sour
         ParticleRun run{particles, e, job.knobs.seed, 0, job.textures};
         run.volumes = volumes;
         run.ends_diffuse = true;
-        if (is_followed(job, around[e])) {
-            run.medium = around[e];
+        const std::uint32_t around = medium_around(job.scene, job.rays, sources[e]);
+        if (is_followed(job, around)) {
+            run.medium = around;
             run.particles = particles_inside(job, sources[e], coarse, run, context);
             if (run.particles == 0) {
                 run.medium = formats::kNone;
                 run.particles = particles;
             }
         }
-        if (around[e] != formats::kNone && run.medium == formats::kNone) {
+        if (run.medium != formats::kNone) {
+            sources[e].extinction = extinction_of(*job.scene.materials[around].medium);
+        } else if (around != formats::kNone) {
             traced.immersed.push_back(e);
         }
         ParticleLight first =
@@ -191,12 +203,8 @@ formats::Result<BakedEmitters> bake_emitters(const EmitterJob& job, const Contex
     if (!job.scene.volumes.empty()) space = make_density_space(job.scene);
     const DensitySpace* const volumes = space ? &*space : nullptr;
     const auto glow = make_glow_lights(job, context.threads);
-    std::vector<std::uint32_t> around;
-    for (const LampSources& lamp : sources) {
-        around.push_back(medium_around(job.scene, job.rays, lamp));
-    }
     const TracedLamps traced = run_stage(log, "particles of emitters", [&](std::uint64_t& rays) {
-        return trace_lamps(job, sources, around, volumes, context, rays);
+        return trace_lamps(job, sources, volumes, context, rays);
     });
     const LampLight lamps{job.scene,
                           job.rays,

@@ -10,6 +10,7 @@
 
 #include "bake/base/rng.h"
 #include "bake/effects/volumes/walk_parts.h"
+#include "bake/exchange/inside_media.h"
 #include "bake/exchange/lamps/onward_ray.h"
 #include "bake/exchange/lamps/spread_points.h"
 #include "bake/scene/punctual_light.h"
@@ -57,6 +58,7 @@ struct BackwardPath {
     std::array<float, 5> first{};
 
     std::vector<Ball> balls = balls_around(check.glow);
+    std::uint32_t first_medium = formats::kNone;  ///< around the receiver
 
     void begin(std::uint32_t path) {
         const auto shift = random_uniform(seed, RandomStage::true_gather, key, 0xfffffffeu);
@@ -78,7 +80,8 @@ struct BackwardPath {
     template <class Share>
     glm::dvec3 straight(const glm::vec3& at, bool is_first, const Share& share) {
         glm::dvec3 sum(0);
-        for (const formats::Light& light : sources.lights) {
+        for (std::size_t l = 0; l < sources.lights.size(); ++l) {
+            const formats::Light& light = sources.lights[l];
             const ArrivingLight arriving = light_at(light, at);
             const double own = share(arriving.to_light);
             if (own == 0 || arriving.irradiance == formats::Rgb{}) continue;
@@ -87,6 +90,9 @@ struct BackwardPath {
             const formats::Rgb& e = arriving.irradiance;
             sum +=
                 own * glm::dvec3(e.r, e.g, e.b) *
+                (sources.around_light[l] == glm::dvec3(0)
+                     ? glm::dvec3(1)
+                     : glm::exp(-double{arriving.distance} * sources.around_light[l])) *
                 volume_transmittance(check.volumes, glm::dvec3(at), glm::dvec3(arriving.to_light),
                                      static_cast<double>(arriving.distance));
         }
@@ -117,7 +123,7 @@ struct BackwardPath {
             return glm::dvec3(0);
         }
         return own * std::abs(facing) / (square * distance) * triangle.area / chance *
-               triangle.radiance *
+               triangle.radiance * glm::exp(-distance * sources.around_triangle[t]) *
                volume_transmittance(check.volumes, glm::dvec3(at), way / distance, distance);
     }
 
@@ -220,7 +226,37 @@ struct BackwardPath {
         return std::nullopt;
     }
 
+    // Through the medium that the path is inside of, as it scatters there, to the next surface.
+    std::optional<Arrival> pass_medium(std::optional<Arrival> at, std::uint32_t& medium,
+                                       glm::dvec3& from, glm::dvec3& direction,
+                                       glm::dvec3& throughput, glm::dvec3& sum) {
+        if (check.known == nullptr || check.known->surfaces == nullptr) return at;
+        const BounceSpace space = check.known->surfaces->space();
+        MirroredRay ray{.medium = medium};
+        while (at) {
+            const glm::vec3 share(throughput), place(from + at->distance * direction);
+            ray.origin = glm::vec3(from), ray.direction = glm::vec3(direction);
+            ray.share = {share.x, share.y, share.z};
+            const glm::vec3 outward(at->side.is_back ? -at->normal : at->normal);
+            const SeenSide side = side_of(check.scene.materials[at->material], outward,
+                                          glm::dot(outward, ray.direction));
+            const bool goes_on =
+                go_on_inside(space,
+                             {place, ray.direction, static_cast<float>(at->distance),
+                              static_cast<float>(at->error), at->material, side},
+                             ray, seed);
+            medium = ray.medium;
+            throughput = {ray.share.r, ray.share.g, ray.share.b};
+            if (!goes_on) break;
+            if (ray.inside >= kMostInside) return std::nullopt;
+            from = glm::dvec3(ray.origin), direction = glm::dvec3(ray.direction);
+            at = fly(from, direction, throughput, sum);
+        }
+        return at;
+    }
+
     glm::dvec3 run(const Receiver& receiver) {
+        std::uint32_t medium = first_medium;
         glm::dvec3 sum(0), throughput(flight.counts), from(receiver.origin), direction,
             axis(receiver.normal);
         bool is_diffuse = true;  // the next direction is drawn around the axis
@@ -233,7 +269,8 @@ struct BackwardPath {
             if (bounce == 0) std::copy_n(first.begin() + 3, 2, x.begin());
             if (is_diffuse) direction = draw_diffuse(from, axis, bounce == 0, x, throughput);
             if (throughput == glm::dvec3(0)) break;
-            const auto at = fly(from, direction, throughput, sum);
+            const auto at = pass_medium(fly(from, direction, throughput, sum), medium, from,
+                                        direction, throughput, sum);
             if (!at) break;
             if (check.scene.materials[at->material].medium) {
                 if (!meet_medium(*at, from, direction, throughput, sum)) break;
@@ -289,9 +326,11 @@ TrueSources collect_true_sources(std::span<const LampSources> lamps) {
         for (const GlowingTriangle& triangle : lamp.triangles) {
             const glm::dvec3 power = triangle.power();
             all.triangles.push_back(triangle);
+            all.around_triangle.push_back(lamp.extinction);
             all.cumulative.push_back(sum += power.x + power.y + power.z);
         }
         all.lights.insert(all.lights.end(), lamp.lights.begin(), lamp.lights.end());
+        all.around_light.resize(all.lights.size(), lamp.extinction);
     }
     return all;
 }
@@ -307,6 +346,9 @@ glm::dvec3 trace_irradiance(const EmitterCheck& check, const TrueSources& source
     }
     for (const FlightBand& flight : flights) {
         BackwardPath path{check, sources, seed, key, flight};
+        if (check.known != nullptr && check.known->surfaces != nullptr) {
+            path.first_medium = medium_around(check.known->surfaces->space(), receiver).material;
+        }
         for (std::uint32_t i = 0; i < paths; ++i) {
             path.begin(i);
             sum += path.run(receiver);

@@ -35,6 +35,7 @@ struct TrueSources {
     std::vector<GlowingTriangle> triangles;
     std::vector<double> cumulative;
     std::vector<formats::Light> lights;
+    std::vector<glm::dvec3> around_triangle, around_light;  ///< LampSources::extinction of each
 };
 
 TrueSources collect_true_sources(std::span<const LampSources> lamps);

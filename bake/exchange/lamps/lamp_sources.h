@@ -52,6 +52,9 @@ struct LampSources {
     std::vector<std::uint32_t> primitives;  ///< of Lamp
     std::vector<formats::Light> lights;
     GlowingVoxels voxels;
+    /// Of the medium around it that particles scatter in [1/m], with similarity; 0: none. Straight
+    /// light is dimmed by it.
+    glm::dvec3 extinction{0};
     /// Sphere around all surfaces of the scene: directional lights shine on its square.
     glm::dvec3 centre{0};
     double radius = 0;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <numbers>
 
 #include "bake/base/frame.h"
 #include "bake/base/rng.h"
@@ -15,20 +17,24 @@ namespace {
 constexpr double kNear = 0.01;  // of the scene: a receiver's surface is not farther
 constexpr std::uint32_t kLeastGlowRays = 16;
 
-// Adds the mean of each lamp's elements around a receiver: four rays down to them, at a vertex to
-// some of those that meet there.
+// Adds the mean of each lamp's elements around a receiver: rays down to them in a cone, at a vertex
+// to some of those that meet there. They start above it: at an edge receivers lie beside the face.
 void add_elements(const LampLight& light, const ElementLayout& layout,
                   std::span<const ElementLight> of_lamps, const Receiver& receiver,
                   std::span<glm::dvec3> total, std::uint64_t& rays) {
     if (std::ranges::all_of(of_lamps, &ElementLight::empty)) return;
-    constexpr std::uint32_t kRays = 4;
-    RayPacket packet = rays_from(receiver.origin);
+    constexpr std::uint32_t kRays = 8;
+    constexpr double kAbove = 1e-4;  // of the scene
+    const double radius = light.sources.front().radius;
+    RayPacket packet =
+        rays_from(receiver.origin + static_cast<float>(kAbove * radius) * receiver.normal);
     LaneMask lanes{};
     const Frame frame = make_frame(receiver.normal);
     for (std::uint32_t i = 0; i < kRays; ++i) {
-        const glm::vec3 across(i == 0 ? 1 : i == 1 ? -1 : 0, i == 2 ? 1 : i == 3 ? -1 : 0, -1);
-        set_lane(packet, lanes, i, glm::normalize(frame.to_world(across)),
-                 static_cast<float>(kNear * light.sources.front().radius));
+        const float turn = std::numbers::pi_v<float> * (2 * static_cast<float>(i) + 1) / kRays;
+        set_lane(packet, lanes, i,
+                 glm::normalize(frame.to_world({std::cos(turn), std::sin(turn), -1})),
+                 static_cast<float>(kNear * radius));
     }
     rays += kRays;
     const PacketHits hits = light.rays.closest(lanes, packet);

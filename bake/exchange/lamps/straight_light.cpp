@@ -23,9 +23,10 @@ constexpr float kShadowEnd = 1 - 1e-4f;
 class ShadowRays {
   public:
     ShadowRays(const RayScene& scene, const Receiver& receiver, std::uint64_t& rays,
-               const DensitySpace* volumes)
+               const DensitySpace* volumes, const glm::dvec3& extinction)
         : scene_(scene),
           volumes_(volumes),
+          extinction_(extinction),
           origin_(receiver.origin),
           packet_(rays_from(receiver.origin)),
           rays_(rays) {}
@@ -50,7 +51,11 @@ class ShadowRays {
         for (std::size_t i = 0; i < count_; ++i) {
             if (!(packet_.tfar[i] >= 0)) continue;
             const glm::dvec3 direction(direction_of(packet_, i));
-            arrived_ += light_[i] * volume_transmittance(volumes_, origin_, direction, reach_[i]);
+            // From far away nothing is inside of a medium.
+            const glm::dvec3 left =
+                extinction_ == glm::dvec3(0) ? glm::dvec3(1) : glm::exp(-reach_[i] * extinction_);
+            arrived_ +=
+                left * light_[i] * volume_transmittance(volumes_, origin_, direction, reach_[i]);
         }
         lanes_ = {};
         count_ = 0;
@@ -58,6 +63,7 @@ class ShadowRays {
 
     const RayScene& scene_;
     const DensitySpace* volumes_;
+    glm::dvec3 extinction_;
     glm::dvec3 origin_;
     RayPacket packet_;
     LaneMask lanes_{};
@@ -188,7 +194,7 @@ glm::dvec3 straight_irradiance(const RayScene& scene, const LampSources& lamp,
                                const Receiver& receiver, std::uint32_t samples, std::uint64_t& rays,
                                const DensitySpace* volumes, std::uint32_t first) {
     if (receiver.normal == glm::vec3(0)) return glm::dvec3(0);
-    const ShadowRays shadow(scene, receiver, rays, volumes);
+    const ShadowRays shadow(scene, receiver, rays, volumes, lamp.extinction);
     return from_triangles(lamp, receiver, samples, first, shadow) +
            from_lights(lamp, receiver, shadow);
 }

@@ -91,7 +91,7 @@ TEST(ImmersedLamps, AreThoseInsideOfMediaNotInTheirHollows) {
     tests::add_surface(scene, tests::make_sphere(1, 0.2f), 0.5f, 1);
     const auto is_in = [&] {
         const RayScene rays = tests::build_rays(scene);
-        return is_immersed(scene, rays, tests::all_sources(scene).front());
+        return medium_around(scene, rays, tests::all_sources(scene).front()) == 0;
     };
     EXPECT_FALSE(is_in()) << "light crosses it";
     scene.materials[0].medium->sigma_s = {1, 1, 1};
