@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "bake/exchange/lamps/receiver_light.h"
 #include "bake/exchange/lamps/triangle_clusters.h"
 #include "tests/bake/lamps/lamp_scenes.h"
 #include "tests/bake/path_differentials/random_inputs.h"
@@ -193,6 +194,27 @@ TEST(TriangleClusters, TrianglesInOnePlaceStandInTheListOnceEach) {
         count += chart.count;
     }
     EXPECT_EQ(count, 1000u);
+}
+
+// At edges and corners receivers lie beside the face, by a rounding, clear of the other ones.
+TEST(CausticElements, AreReadAtEdgesAndCornersAsInTheMiddle) {
+    const formats::Scene scene = half_square();
+    const RayScene rays = tests::build_rays(scene);
+    const ElementLayout layout(scene, 0.01);
+    const std::vector<ElementLight> caustics{
+        {std::vector<glm::vec3>(layout.size(), {3, 2, 1}), {}}};
+    std::vector<LampSources> sources(1);
+    sources.front().radius = 1;
+    LampLight light{scene, rays, sources};
+    light.caustics = caustics;
+    light.layout = &layout;
+    for (const glm::vec2 at : {glm::vec2(0.4f, 0.3f), glm::vec2(-3e-7f, 0.4f),
+                               glm::vec2(-3e-7f, -3e-7f), glm::vec2(1 + 3e-7f, 1 + 3e-7f)}) {
+        std::vector<glm::dvec3> sum(1, glm::dvec3(0));
+        std::uint64_t traced = 0;
+        add_caustics(light, {{at, 1e-7f}, {0, 0, 1}}, sum, traced);
+        EXPECT_NEAR(sum[0].x, 3, 1e-6) << at.x << ", " << at.y;
+    }
 }
 
 }  // namespace
